@@ -1,0 +1,20 @@
+# One set of compile options for all of coxa, carried by the interface target coxa::options.
+add_library(coxa_options INTERFACE)
+add_library(coxa::options ALIAS coxa_options)
+target_include_directories(coxa_options INTERFACE ${PROJECT_SOURCE_DIR}/include)
+target_link_libraries(coxa_options INTERFACE Eigen3::Eigen Threads::Threads)
+target_compile_definitions(coxa_options INTERFACE EIGEN_DONT_PARALLELIZE)
+# no -march: results must be the same bits on every x86-64; no contraction for the same reason
+target_compile_options(coxa_options INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
+                       -Woverloaded-virtual -ffp-contract=off -fno-math-errno)
+if(COXA_WARNINGS_AS_ERRORS)
+  target_compile_options(coxa_options INTERFACE -Werror)
+endif()
+if(COXA_SANITIZE)
+  target_compile_options(coxa_options INTERFACE -fsanitize=${COXA_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(coxa_options INTERFACE -fsanitize=${COXA_SANITIZE})
+endif()
+find_program(LLD ld.lld)
+if(LLD)
+  target_link_options(coxa_options INTERFACE -fuse-ld=lld)
+endif()

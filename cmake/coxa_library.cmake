@@ -1,0 +1,32 @@
+# coxa_library(name RANK n SOURCES … DEPENDS … [PRIVATE …])
+#   A library of the house. DEPENDS names coxa libraries, each of a lower rank (checked here on links
+#   and by tools/check_layers.py on #include lines); PRIVATE names third-party targets.
+function(coxa_library name)
+  cmake_parse_arguments(LIB "" "RANK" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  add_library(coxa_${name} STATIC ${LIB_SOURCES})
+  add_library(coxa::${name} ALIAS coxa_${name})
+  target_link_libraries(coxa_${name} PUBLIC coxa::options PRIVATE ${LIB_PRIVATE})
+  set_property(TARGET coxa_${name} PROPERTY COXA_RANK ${LIB_RANK})
+  foreach(dep IN LISTS LIB_DEPENDS)
+    get_property(rank TARGET coxa_${dep} PROPERTY COXA_RANK)
+    if(NOT rank LESS LIB_RANK)
+      message(FATAL_ERROR "coxa::${name} (rank ${LIB_RANK}) may not depend on coxa::${dep} (rank ${rank})")
+    endif()
+    target_link_libraries(coxa_${name} PUBLIC coxa::${dep})
+  endforeach()
+endfunction()
+
+# coxa_test(name SOURCES … DEPENDS … [PRIVATE …])
+#   One GoogleTest program for a library's tests; DEPENDS names coxa libraries.
+function(coxa_test name)
+  cmake_parse_arguments(TST "" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  add_executable(${name}_test ${TST_SOURCES})
+  target_include_directories(${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  foreach(dep IN LISTS TST_DEPENDS)
+    target_link_libraries(${name}_test PRIVATE coxa::${dep})
+  endforeach()
+  target_link_libraries(${name}_test PRIVATE GTest::gtest_main ${TST_PRIVATE})
+  target_compile_definitions(${name}_test PRIVATE
+    COXA_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared" COXA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  gtest_discover_tests(${name}_test DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 LABELS ${name})
+endfunction()
