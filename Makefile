@@ -1,0 +1,53 @@
+# The targets of coxa; each does all the set-up it needs. See README.md.
+.PHONY: demo test build verify bench docs clean deps configure check sanitize
+
+BUILD  := build/release
+STRICT := $(if $(CI),ON,OFF)
+
+# Installs what is missing from Debian's packages (quick when nothing is).
+deps:
+	@tools/install_deps.sh
+
+configure: deps
+	@cmake --preset release -DCOXA_WARNINGS_AS_ERRORS=$(STRICT) -DCOXA_BENCHMARKS=ON > build-configure.log 2>&1 \
+	  && rm -f build-configure.log || { cat build-configure.log; rm -f build-configure.log; exit 1; }
+
+# The command at build/release/coxa.
+build: configure
+	@cmake --build $(BUILD) --target coxa
+
+# Draws a virtual patient and runs the whole chain on it.
+demo: build
+	@tools/demo.sh
+
+# Everything fast: format, layers, unit tests, and the sanitizer build of the libraries without ITK and VTK.
+test: check
+	@cmake --build $(BUILD)
+	@ctest --test-dir $(BUILD) --output-on-failure --timeout 600 -j 2
+	@$(MAKE) --no-print-directory sanitize
+
+check: configure
+	@tools/check_layers.py
+	@tools/check_format.sh
+
+sanitize: deps
+	@cmake --preset asan > /dev/null
+	@cmake --build build/asan
+	@ctest --test-dir build/asan --output-on-failure --timeout 900 -j 2
+
+# Physics against closed forms and published figures.
+verify: configure
+	@cmake --build $(BUILD) --target coxa_verify
+	@$(BUILD)/coxa_verify
+
+# Speed of the hot paths.
+bench: configure
+	@cmake --build $(BUILD)
+	@for program in $(BUILD)/*_bench; do echo "== $$program"; $$program || exit 1; done
+
+# The pages are Markdown in docs/; this checks that every relative link in them leads somewhere.
+docs:
+	@tools/check_docs.py
+
+clean:
+	rm -rf build demo
