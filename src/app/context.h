@@ -1,0 +1,43 @@
+#pragma once
+
+#include <coxa/core/monitor.h>
+#include <coxa/pipeline/record.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace coxa::app {
+
+/// Flags every verb understands.
+struct CommonOptions {
+  int threads = 0;          ///< 0: as many as the machine has
+  std::uint64_t seed = 1;   ///< of everything random
+  bool json = false;        ///< progress, result and errors as JSON lines on standard output
+  bool quiet = false;       ///< errors and the result only
+  bool verbose = false;     ///< figures of every stage
+};
+
+class ProgressPrinter;
+
+/// What a verb needs from the command line's surroundings.
+class Context {
+ public:
+  Context();
+  ~Context();
+  CommonOptions common;
+
+  /// Reports progress and warnings to the terminal; carries the Ctrl-C flag.
+  Monitor monitor();
+  /// Prints the closing lines of a verb: where the result is, and its figures.
+  void print_result(const std::string& where, const pipeline::Record& record);
+  /// One line for people; nothing with --quiet or --json.
+  void say(const std::string& line);
+  /// Prints an error and returns the exit code.
+  int print_error(std::string_view code_name, const std::string& text, int exit_code);
+
+ private:
+  std::unique_ptr<ProgressPrinter> progress_;
+};
+
+}  // namespace coxa::app

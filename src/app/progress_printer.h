@@ -1,0 +1,31 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+namespace coxa::app {
+
+enum class ProgressStyle { terminal, lines, json, silent };
+
+/// One line with stage, share and time left on a terminal; plain lines when piped; JSON lines with --json.
+class ProgressPrinter {
+ public:
+  explicit ProgressPrinter(ProgressStyle style) : style_(style) {}
+  void update(std::string_view stage, double share);
+  void warn(std::string_view text);
+  /// Ends a terminal line in progress, so that what follows starts on its own line.
+  void finish_line();
+
+ private:
+  double seconds_left(double share) const;
+  bool worth_printing(std::string_view stage, double share) const;
+
+  ProgressStyle style_;
+  std::string stage_;
+  double first_share_ = 0.0, printed_share_ = -1.0;
+  std::chrono::steady_clock::time_point stage_start_, printed_at_;
+  bool line_open_ = false;
+};
+
+}  // namespace coxa::app
