@@ -12,14 +12,16 @@ struct Sphere {
 };
 
 struct SphereFitOptions {
-  double outlier_scale = 0.0;  ///< 0: plain least squares; else Tukey cut-off in robust standard deviations (4.7 usual)
+  double outlier_scale = 0.0;  ///< 0: plain least squares; else Tukey cut-off in robust standard
+                               ///< deviations (4.7 usual)
 };
 
 /// Geometric least-squares sphere (Gauss-Newton from the algebraic fit), optionally robust.
 ///
 /// @param points n×3, n >= 4, not coplanar   @param weights n or empty (all one)
 /// @throws Error bad_input if fewer than four points or if they are coplanar
-Sphere fit_sphere(const Points& points, const VecX& weights = {}, const SphereFitOptions& options = {});
+Sphere fit_sphere(const Points& points, const VecX& weights = {},
+                  const SphereFitOptions& options = {});
 
 struct Plane {
   Vec3 point = Vec3::Zero();

@@ -10,7 +10,9 @@ struct RigidTransform {
   Vec3 p = Vec3::Zero();
 
   Vec3 operator*(const Vec3& point) const { return R * point + p; }
-  RigidTransform operator*(const RigidTransform& other) const { return {R * other.R, R * other.p + p}; }
+  RigidTransform operator*(const RigidTransform& other) const {
+    return {R * other.R, R * other.p + p};
+  }
   RigidTransform inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
 };
 

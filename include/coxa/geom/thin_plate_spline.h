@@ -4,7 +4,8 @@
 
 namespace coxa {
 
-/// Smooth map of space that takes landmarks to landmarks: x -> A x + t + sum w_i |x - p_i| (3-D biharmonic).
+/// Smooth map of space that takes landmarks to landmarks: x -> A x + t + sum w_i |x - p_i| (3-D
+/// biharmonic).
 ///
 /// Source: Bookstein 1989, kernel U(r) = r for three dimensions.
 class ThinPlateSpline {

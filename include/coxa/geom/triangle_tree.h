@@ -24,7 +24,8 @@ struct RayHit {
 
 /// Axis-aligned bounding-volume tree over triangles; refits in place when the vertices move.
 ///
-/// @note keeps its own copy of the vertices and triangles. Queries are const and may run in parallel;
+/// @note keeps its own copy of the vertices and triangles. Queries are const and may run in
+/// parallel;
 ///       ties are broken by the lower triangle number, so answers do not depend on threads.
 class TriangleTree {
  public:
@@ -39,8 +40,8 @@ class TriangleTree {
   std::optional<RayHit> first_hit(const Vec3& origin, const Vec3& direction, double limit) const;
   /// All triangles whose boxes meet the box [low, high], ascending.
   std::vector<Index> overlapping(const Vec3& low, const Vec3& high) const;
-  /// Signed distance, negative inside; the surface must be closed and oriented outward (angle-weighted
-  /// pseudo-normals, Baerentzen and Aanaes 2005).
+  /// Signed distance, negative inside; the surface must be closed and oriented outward
+  /// (angle-weighted pseudo-normals, Baerentzen and Aanaes 2005).
   double signed_distance(const Vec3& p) const;
   /// The sign rule alone, for a nearest point already at hand: +1 outside, -1 inside.
   double sign_at(const Vec3& p, const NearestPoint& nearest) const;
@@ -52,22 +53,23 @@ class TriangleTree {
   const Triangles& triangles() const { return triangles_; }
 
  private:
+  /// Box of a range of order_; an inner node's children stand side by side at child, child + 1.
   struct Node {
     Vec3 low, high;
-    Index left = 0, right = 0;   ///< children; a leaf has right == 0
-    Index begin = 0, end = 0;    ///< range in order_
+    Index child = 0;           ///< 0 in a leaf
+    Index begin = 0, end = 0;  ///< range in order_
   };
-  Index build(Index begin, Index end);
+  void build();
   void refit();
-  void compute_pseudo_normals();
+  void copy_corners();
 
   Points points_;
   Triangles triangles_;
-  std::vector<Index> order_;
-  std::vector<Node> nodes_;
-  Points vertex_normals_;               ///< angle-weighted
-  std::vector<Vec3> edge_normals_;      ///< 3 per triangle, edge k joins corners k and k+1
-  std::vector<Vec3> face_normals_;
+  std::vector<Node> nodes_;        ///< parents before children
+  std::vector<Index> order_;       ///< triangle numbers, leaf by leaf
+  std::vector<double> corners_;    ///< 9 per entry of order_: a, b, c
+  std::vector<Index> ring_begin_;  ///< V+1, ranges in ring_
+  std::vector<Index> ring_;        ///< triangles around each vertex, ascending
 };
 
 }  // namespace coxa
