@@ -1,0 +1,137 @@
+#include "pair_search.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace coxa::collide {
+namespace {
+
+// a projection that misses the open border by less than this share of an edge still counts as on it
+constexpr double kBorderShare = 1e-3;
+// distances below this have no direction of their own, mm
+constexpr double kTouching = 1e-9;
+
+Vec3 corner(const OtherSurface& other, Index triangle, int k) {
+  return other.tree.points().row(other.tree.triangles()(triangle, k)).transpose();
+}
+
+Vec3 face_normal(const OtherSurface& other, Index triangle) {
+  const Vec3 a = corner(other, triangle, 0);
+  return (corner(other, triangle, 1) - a).cross(corner(other, triangle, 2) - a).normalized();
+}
+
+Vec3 smooth_normal(const OtherSurface& other, Index triangle, const Vec3& barycentric) {
+  Vec3 normal = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    normal +=
+        barycentric[k] * other.vertex_normals.row(other.tree.triangles()(triangle, k)).transpose();
+  }
+  return normal.normalized();
+}
+
+/// Whether the nearest point lies on the open border of the surface.
+bool on_border(const OtherSurface& other, const NearestPoint& nearest) {
+  for (int k = 0; k < 3; ++k) {
+    const Index vertex = other.tree.triangles()(nearest.triangle, k);
+    if (nearest.barycentric[k] == 1.0 && other.boundary_vertex[static_cast<std::size_t>(vertex)]) {
+      return true;
+    }
+    // edge k joins corners k and k+1: the third weight is zero on it
+    if (nearest.barycentric[(k + 2) % 3] == 0.0 && other.boundary_edge(nearest.triangle, k)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Whether the sample lies beyond the open border: its nearest point is there and off to the side.
+bool beyond_border(const OtherSurface& other, const Vec3& point, const NearestPoint& nearest) {
+  if (!on_border(other, nearest)) return false;
+  const Vec3 normal = smooth_normal(other, nearest.triangle, nearest.barycentric);
+  const Vec3 offset = point - nearest.point;
+  double edge = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 side =
+        corner(other, nearest.triangle, (k + 1) % 3) - corner(other, nearest.triangle, k);
+    edge = std::max(edge, side.norm());
+  }
+  return (offset - offset.dot(normal) * normal).norm() > kBorderShare * edge;
+}
+
+/// Barycentric weights of the point where the line through `point` along `direction` meets the
+/// triangle's plane; nullopt where it hardly does.
+std::optional<Vec3> line_hit(const OtherSurface& other, Index triangle, const Vec3& point,
+                             const Vec3& direction) {
+  const Vec3 a = corner(other, triangle, 0);
+  const Vec3 u = corner(other, triangle, 1) - a, v = corner(other, triangle, 2) - a;
+  const Vec3 area = u.cross(v);
+  const double slope = area.normalized().dot(direction);
+  if (!(std::abs(slope) > 0.3)) return std::nullopt;
+  const Vec3 hit = point - direction * ((point - a).dot(area) / direction.dot(area)) - a;
+  const double squared = area.squaredNorm();
+  const double second = hit.cross(v).dot(area) / squared, third = u.cross(hit).dot(area) / squared;
+  return Vec3(1.0 - second - third, second, third);
+}
+
+std::optional<FacedPoint> along_smooth_normal(const OtherSurface& other, const Vec3& point,
+                                              const NearestPoint& nearest) {
+  FacedPoint faced{nearest.triangle, nearest.barycentric, Vec3::Zero()};
+  // fixed point of "the normal where the line along the normal arrives"; contracts as gap over
+  // radius
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    faced.normal = smooth_normal(other, faced.triangle, faced.barycentric);
+    const auto hit = line_hit(other, faced.triangle, point, faced.normal);
+    if (!hit) return std::nullopt;
+    faced.barycentric = *hit;
+  }
+  return faced;
+}
+
+}  // namespace
+
+std::optional<FacedPoint> find_faced_point(const OtherSurface& other, const Vec3& point,
+                                           const Vec3& normal, const ContactOptions& options) {
+  const auto nearest = other.tree.nearest_within(point, options.search_distance);
+  if (!nearest || beyond_border(other, point, *nearest)) return std::nullopt;
+
+  FacedPoint faced{nearest->triangle, nearest->barycentric, Vec3::Zero()};
+  if (options.normal == ContactNormal::smooth) {
+    const auto smooth = along_smooth_normal(other, point, *nearest);
+    if (!smooth) return std::nullopt;
+    faced = *smooth;
+  } else {
+    const Vec3 offset = point - nearest->point;
+    const double distance = offset.norm();
+    faced.normal = distance > kTouching
+                       ? Vec3(other.tree.sign_at(point, *nearest) / distance * offset)
+                       : face_normal(other, nearest->triangle);
+  }
+  if (options.facing > -1.0 && -normal.dot(faced.normal) < options.facing) return std::nullopt;
+  return faced;
+}
+
+Points triangle_areas(const Points& points, const Triangles& triangles) {
+  Points areas(triangles.rows(), 3);
+  for (Index t = 0; t < triangles.rows(); ++t) {
+    const Vec3 a = points.row(triangles(t, 0)), b = points.row(triangles(t, 1)),
+               c = points.row(triangles(t, 2));
+    areas.row(t) = 0.5 * (b - a).cross(c - a).transpose();
+  }
+  return areas;
+}
+
+Points vertex_normals_of(const Points& points, const Triangles& triangles) {
+  const Points areas = triangle_areas(points, triangles);
+  Points normals = Points::Zero(points.rows(), 3);
+  for (Index t = 0; t < triangles.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) normals.row(triangles(t, k)) += areas.row(t);
+  }
+  for (Index v = 0; v < points.rows(); ++v) {
+    const double length = normals.row(v).norm();
+    if (length > 0.0) normals.row(v) /= length;
+  }
+  return normals;
+}
+
+}  // namespace coxa::collide

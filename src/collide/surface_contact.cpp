@@ -1,0 +1,212 @@
+#include <coxa/collide/surface_contact.h>
+
+#include <coxa/core/error.h>
+#include <coxa/core/parallel.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pair_search.h"
+
+namespace coxa::collide {
+namespace {
+
+struct QuadraturePoint {
+  Vec3 barycentric;
+  double weight;
+};
+
+/// Symmetric rules of degree 2 and 4 (Strang and Fix 1973); weights sum to 1.
+std::vector<QuadraturePoint> quadrature_points(ContactQuadrature quadrature) {
+  std::vector<QuadraturePoint> points;
+  const auto add_ring = [&](double small, double weight) {
+    for (int k = 0; k < 3; ++k) {
+      Vec3 barycentric = Vec3::Constant(small);
+      barycentric[k] = 1.0 - 2.0 * small;
+      points.push_back({barycentric, weight});
+    }
+  };
+  if (quadrature == ContactQuadrature::three_points) {
+    add_ring(1.0 / 6.0, 1.0 / 3.0);
+  } else {
+    add_ring(0.445948490915965, 0.223381589678011);
+    add_ring(0.091576213509771, 0.109951743655322);
+  }
+  return points;
+}
+
+void check(const ContactOptions& options) {
+  require(options.stiffness > 0.0, "contact stiffness must be positive (MPa/mm), got ",
+          options.stiffness);
+  require(options.search_distance > std::abs(options.minimum_gap),
+          "contact search_distance must exceed minimum_gap ", options.minimum_gap, " mm, got ",
+          options.search_distance);
+  require(-1.0 <= options.facing && options.facing < 1.0, "contact facing must be in [-1, 1), got ",
+          options.facing);
+}
+
+}  // namespace
+
+struct SurfaceContact::Candidate {
+  bool paired = false;
+  FacedPoint faced;
+};
+
+SurfaceContact::SurfaceContact(ParticleSurface slave, ParticleSurface other,
+                               const ContactOptions& options)
+    : options_(options), slave_(std::move(slave)), other_(std::move(other)) {
+  check(options);
+  other_mesh_.triangles = other_->triangles;
+  other_mesh_.points = Points::Zero(other_->n_vertices(), 3);
+  make_samples();
+}
+
+SurfaceContact::SurfaceContact(ParticleSurface slave, TriMesh obstacle,
+                               const ContactOptions& options)
+    : options_(options), slave_(std::move(slave)), other_mesh_(std::move(obstacle)) {
+  check(options);
+  if (other_mesh_.empty()) fail(ErrorCode::bad_mesh, "contact obstacle has no triangle");
+  tree_.emplace(other_mesh_.points, other_mesh_.triangles);
+  make_samples();
+}
+
+void SurfaceContact::make_samples() {
+  if (options_.quadrature == ContactQuadrature::vertices) {
+    // each vertex as a corner of its lowest triangle
+    std::vector<bool> seen(static_cast<std::size_t>(slave_.n_vertices()), false);
+    for (Index t = 0; t < slave_.n_triangles(); ++t) {
+      for (int k = 0; k < 3; ++k) {
+        const auto v = static_cast<std::size_t>(slave_.triangles(t, k));
+        if (!seen[v]) samples_.push_back({.triangle = t, .barycentric = Vec3::Unit(k)});
+        seen[v] = true;
+      }
+    }
+  } else {
+    for (Index t = 0; t < slave_.n_triangles(); ++t) {
+      for (const QuadraturePoint& point : quadrature_points(options_.quadrature)) {
+        samples_.push_back({.triangle = t, .barycentric = point.barycentric});
+      }
+    }
+  }
+  multiplier_.assign(samples_.size(), 0.0);
+  boundary_edge_ = boundary_edges(other_mesh_.triangles);
+  boundary_vertex_.assign(static_cast<std::size_t>(other_mesh_.n_vertices()), false);
+  for (Index t = 0; t < other_mesh_.n_triangles(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      if (!boundary_edge_(t, k)) continue;
+      boundary_vertex_[static_cast<std::size_t>(other_mesh_.triangles(t, k))] = true;
+      boundary_vertex_[static_cast<std::size_t>(other_mesh_.triangles(t, (k + 1) % 3))] = true;
+    }
+  }
+}
+
+void SurfaceContact::prepare_other(const VecX& x) {
+  if (!other_) return;
+  other_mesh_.points = surface_points(*other_, x);
+  if (tree_) {
+    tree_->update_points(other_mesh_.points);
+  } else {
+    tree_.emplace(other_mesh_.points, other_mesh_.triangles);
+  }
+}
+
+void SurfaceContact::update_obstacle(const Points& points) {
+  COXA_ASSERT(!other_);
+  require(points.rows() == other_mesh_.points.rows(), "moved obstacle has ", points.rows(),
+          " vertices, expected ", other_mesh_.points.rows());
+  other_mesh_.points = points;
+  tree_->update_points(points);
+}
+
+void SurfaceContact::update_areas(const Points& areas) {
+  if (options_.quadrature != ContactQuadrature::vertices) {
+    const auto rule = quadrature_points(options_.quadrature);
+    for (std::size_t s = 0; s < samples_.size(); ++s) {
+      samples_[s].area = rule[s % rule.size()].weight * areas.row(samples_[s].triangle).norm();
+    }
+    return;
+  }
+  VecX vertex_area = VecX::Zero(slave_.n_vertices());
+  for (Index t = 0; t < slave_.n_triangles(); ++t) {
+    for (int k = 0; k < 3; ++k) vertex_area[slave_.triangles(t, k)] += areas.row(t).norm() / 3.0;
+  }
+  for (ContactSample& sample : samples_) {
+    int k = 0;
+    sample.barycentric.maxCoeff(&k);
+    sample.area = vertex_area[slave_.triangles(sample.triangle, k)];
+  }
+}
+
+void SurfaceContact::update_pairs(const VecX& x) {
+  prepare_other(x);
+  const Points points = surface_points(slave_, x);
+  const Points areas = triangle_areas(points, slave_.triangles);
+  const Points normals = vertex_normals_of(points, slave_.triangles);
+  const Points other_normals = vertex_normals_of(other_mesh_.points, other_mesh_.triangles);
+  const OtherSurface other{*tree_, other_normals, boundary_edge_, boundary_vertex_};
+  update_areas(areas);
+
+  const bool at_vertices = options_.quadrature == ContactQuadrature::vertices;
+  std::vector<Candidate> candidates(samples_.size());
+  parallel_for(n_samples(), [&](Index s) {
+    const ContactSample& sample = samples_[static_cast<std::size_t>(s)];
+    Vec3 point = Vec3::Zero(), vertex_normal = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const Index v = slave_.triangles(sample.triangle, k);
+      point += sample.barycentric[k] * points.row(v).transpose();
+      vertex_normal += sample.barycentric[k] * normals.row(v).transpose();
+    }
+    const Vec3 normal = at_vertices ? vertex_normal : areas.row(sample.triangle).transpose();
+    const auto faced = find_faced_point(other, point, normal.normalized(), options_);
+    if (faced) candidates[static_cast<std::size_t>(s)] = {true, *faced};
+  });
+
+  pairs_.clear();
+  stencil_particles_.clear();
+  stencil_weights_.clear();
+  for (Index s = 0; s < n_samples(); ++s) {
+    const Candidate& candidate = candidates[static_cast<std::size_t>(s)];
+    if (candidate.paired) {
+      append_pair(s, candidate, samples_[static_cast<std::size_t>(s)].area);
+    } else {
+      multiplier_[static_cast<std::size_t>(s)] = 0.0;
+    }
+  }
+}
+
+void SurfaceContact::append_pair(Index sample, const Candidate& candidate, double area) {
+  ContactPair pair{.sample = sample,
+                   .other_triangle = candidate.faced.triangle,
+                   .normal = candidate.faced.normal,
+                   .offset = options_.minimum_gap,
+                   .area = area,
+                   .first = static_cast<Index>(stencil_particles_.size())};
+  const auto append = [&](const ParticleSurface& surface, Index vertex, double weight) {
+    const auto first =
+        static_cast<std::size_t>(surface.row_start[static_cast<std::size_t>(vertex)]);
+    const auto last =
+        static_cast<std::size_t>(surface.row_start[static_cast<std::size_t>(vertex) + 1]);
+    for (std::size_t k = first; k < last; ++k) {
+      stencil_particles_.push_back(surface.particle[k]);
+      stencil_weights_.push_back(weight * surface.weight[k]);
+    }
+  };
+  const ContactSample& of = samples_[static_cast<std::size_t>(sample)];
+  for (int k = 0; k < 3; ++k) {
+    if (of.barycentric[k] != 0.0)
+      append(slave_, slave_.triangles(of.triangle, k), of.barycentric[k]);
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Index vertex = other_mesh_.triangles(pair.other_triangle, k);
+    const double weight = candidate.faced.barycentric[k];
+    if (other_) {
+      append(*other_, vertex, -weight);
+    } else {
+      pair.offset += weight * pair.normal.dot(other_mesh_.points.row(vertex).transpose());
+    }
+  }
+  pair.last = static_cast<Index>(stencil_particles_.size());
+  pairs_.push_back(pair);
+}
+
+}  // namespace coxa::collide

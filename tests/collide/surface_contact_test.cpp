@@ -1,0 +1,203 @@
+#include <coxa/collide/surface_contact.h>
+
+#include <coxa/core/error.h>
+#include <coxa/core/parallel.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "collide/shapes.h"
+
+namespace coxa::collide {
+
+const TriMesh ball = test::icosphere(2, 10.0, Vec3(0, 0, 0));
+const TriMesh other_ball = test::icosphere(3, 10.0, Vec3(0.3, 0.4, 19.7));
+
+/// Two overlapping balls of particles, slightly shaken.
+SurfaceContact ball_contact(ContactNormal normal) {
+  return SurfaceContact(make_particle_surface(ball.triangles),
+                        make_particle_surface(test::after(ball, other_ball)),
+                        {.stiffness = 50.0, .normal = normal});
+}
+const VecX ball_x = test::shaken(test::stacked(ball, other_ball), 0.01);
+
+VecX force_of(const SurfaceContact& contact, const VecX& x) {
+  VecX force = VecX::Zero(x.size());
+  contact.add_force(x, VecX::Zero(x.size()), force);
+  return force;
+}
+
+class SurfaceContactNormals : public testing::TestWithParam<ContactNormal> {};
+INSTANTIATE_TEST_SUITE_P(All, SurfaceContactNormals,
+                         testing::Values(ContactNormal::nearest, ContactNormal::smooth));
+
+TEST_P(SurfaceContactNormals, ForceIsTheSlopeOfTheEnergy) {
+  SurfaceContact contact = ball_contact(GetParam());
+  contact.update_pairs(ball_x);
+  contact.update_multipliers(ball_x);
+  const VecX force = force_of(contact, ball_x);
+  ASSERT_GT(force.norm(), 1.0);
+  const double step = 1e-5;
+  for (Index i = 0; i < ball_x.size(); ++i) {
+    if (i % 7 != 0 && force[i] == 0.0) continue;
+    VecX ahead = ball_x, behind = ball_x;
+    ahead[i] += step;
+    behind[i] -= step;
+    const double slope = (contact.energy(ahead) - contact.energy(behind)) / (2.0 * step);
+    EXPECT_NEAR(-slope, force[i], 1e-5 * force.lpNorm<Eigen::Infinity>());
+  }
+}
+
+TEST_P(SurfaceContactNormals, JacobianIsTheSlopeOfTheForce) {
+  SurfaceContact contact = ball_contact(GetParam());
+  contact.update_pairs(ball_x);
+  const Index n = static_cast<Index>(ball_x.size() / 3);
+  solve::BlockMatrix A(n, contact.pattern());
+  A.set_zero();
+  contact.add_jacobian(ball_x, VecX::Zero(ball_x.size()), 2.0, 0.0, A);
+  Rng rng(3);
+  VecX direction(ball_x.size()), product;
+  for (double& value : direction) value = rng.normal();
+  A.multiply(direction, product);
+  const double step = 1e-7;
+  const VecX difference = (force_of(contact, ball_x + step * direction) -
+                           force_of(contact, ball_x - step * direction)) /
+                          (2.0 * step);
+  EXPECT_LE((product + 2.0 * difference).norm(), 1e-5 * product.norm());
+}
+
+TEST_P(SurfaceContactNormals, ForceAndMomentBalance) {
+  SurfaceContact contact = ball_contact(GetParam());
+  contact.update_pairs(ball_x);
+  const VecX force = force_of(contact, ball_x);
+  Vec3 sum = Vec3::Zero(), moment = Vec3::Zero(), on_slave = Vec3::Zero();
+  for (Index i = 0; i < ball_x.size() / 3; ++i) {
+    sum += force.segment<3>(3 * i);
+    moment += ball_x.segment<3>(3 * i).cross(Vec3(force.segment<3>(3 * i)));
+    if (i < ball.n_vertices()) on_slave += force.segment<3>(3 * i);
+  }
+  EXPECT_LT(on_slave.z(), -1.0);
+  EXPECT_LE(sum.norm(), 1e-12 * on_slave.norm());
+  EXPECT_LE(moment.norm(), 1e-12 * on_slave.norm() * 20.0);
+}
+
+TEST_P(SurfaceContactNormals, AreBitIdenticalForOneAndEightThreads) {
+  const auto run = [&] {
+    SurfaceContact contact = ball_contact(GetParam());
+    contact.update_pairs(ball_x);
+    return force_of(contact, ball_x);
+  };
+  EXPECT_EQ(with_threads(1, run), with_threads(8, run));
+}
+
+/// Total upward force on a plate of side 10 sunk 0.02 mm into an obstacle facing up.
+double plate_force(Index n, const ContactOptions& options) {
+  const TriMesh plate = test::turned_over(test::plate(-0.02, 5.0, n));
+  const TriMesh floor = test::plate(0.0, 7.0, 3);
+  SurfaceContact contact(make_particle_surface(plate.triangles), floor, options);
+  const VecX x = test::stacked(plate);
+  contact.update_pairs(x);
+  const VecX force = force_of(contact, x);
+  double sum = 0.0;
+  for (Index i = 2; i < force.size(); i += 3) sum += force[i];
+  return sum;
+}
+
+TEST(SurfaceContact, PressureDoesNotDependOnMeshOrQuadrature) {
+  const double exact = 100.0 * 0.02 * 100.0;  // stiffness, depth, area
+  for (const auto quadrature : {ContactQuadrature::vertices, ContactQuadrature::three_points,
+                                ContactQuadrature::six_points}) {
+    for (const Index n : {1, 4, 9}) {
+      EXPECT_NEAR(plate_force(n, {.quadrature = quadrature}), exact, 1e-9 * exact);
+    }
+  }
+}
+TEST(SurfaceContact, StiffnessAndMinimumGapRaiseThePressure) {
+  EXPECT_NEAR(plate_force(4, {.stiffness = 300.0}), 600.0, 1e-9);
+  EXPECT_NEAR(plate_force(4, {.minimum_gap = 0.05}), 700.0, 1e-9);
+}
+TEST(SurfaceContact, PairsNothingBeyondTheSearchDistance) {
+  EXPECT_GT(plate_force(4, {.search_distance = 0.021}), 0.0);
+  EXPECT_EQ(plate_force(4, {.search_distance = 0.019}), 0.0);
+}
+TEST(SurfaceContact, PairsOnlySurfacesThatFaceEachOther) {
+  const TriMesh same_way = test::plate(-0.02, 5.0, 2), floor = test::plate(0.0, 5.0, 3);
+  for (const auto& [facing, count] : {std::pair{-1.0, 24}, std::pair{0.5, 0}}) {
+    SurfaceContact contact(make_particle_surface(same_way.triangles), floor, {.facing = facing});
+    contact.update_pairs(test::stacked(same_way));
+    EXPECT_EQ(contact.pairs().size(), static_cast<std::size_t>(count));
+  }
+}
+TEST(SurfaceContact, DoesNotPairWhatLiesBeyondAnOpenBorder) {
+  TriMesh half = test::turned_over(test::plate(-0.02, 5.0, 20));
+  half.points.col(0).array() += 5.05;  // half of it past the floor's border at x = 5
+  const TriMesh floor = test::plate(0.0, 5.0, 3);
+  for (const auto normal : {ContactNormal::nearest, ContactNormal::smooth}) {
+    SurfaceContact contact(make_particle_surface(half.triangles), floor, {.normal = normal});
+    contact.update_pairs(test::stacked(half));
+    for (const ContactSample& sample : contact.samples(test::stacked(half))) {
+      EXPECT_EQ(sample.pressure > 0.0, sample.point.x() < 5.0) << sample.point.x();
+    }
+  }
+}
+TEST(SurfaceContact, IsPushedOutOfAClosedObstacle) {
+  const TriMesh inner = test::icosphere(1, 1.0, Vec3(0, 0, 9.5));
+  SurfaceContact contact(make_particle_surface(inner.triangles), ball, {});
+  const VecX x = test::stacked(inner);
+  contact.update_pairs(x);
+  const VecX force = force_of(contact, x);
+  double up = 0.0;
+  for (Index i = 2; i < force.size(); i += 3) up += force[i];
+  EXPECT_GT(up, 0.0);
+}
+TEST(SurfaceContact, FollowsAMovedObstacle) {
+  const TriMesh plate = test::turned_over(test::plate(0.5, 5.0, 2)), floor = test::plate(0.0, 5.0, 3);
+  SurfaceContact contact(make_particle_surface(plate.triangles), floor, {});
+  const VecX x = test::stacked(plate);
+  contact.update_pairs(x);
+  EXPECT_EQ(contact.energy(x), 0.0);
+  Points raised = floor.points;
+  raised.col(2).array() += 0.6;
+  contact.update_obstacle(raised);
+  contact.update_pairs(x);
+  EXPECT_NEAR(contact.energy(x), 0.5 * 100.0 * 0.1 * 0.1 * 100.0, 1e-9);
+  EXPECT_THROW(contact.update_obstacle(Points(raised.topRows(3))), Error);
+}
+TEST(SurfaceContact, MultipliersCarryTheLoadAtZeroPenetration) {
+  const TriMesh plate = test::turned_over(test::plate(-0.02, 5.0, 2)), floor = test::plate(0.0, 5.0, 3);
+  SurfaceContact contact(make_particle_surface(plate.triangles), floor, {});
+  VecX x = test::stacked(plate);
+  contact.update_pairs(x);
+  EXPECT_NEAR(contact.update_multipliers(x), 0.02, 1e-12);
+  for (Index i = 2; i < x.size(); i += 3) x[i] = 0.0;
+  EXPECT_NEAR(contact.pressure(contact.pairs().front(), x), 2.0, 1e-12);
+  contact.clear_multipliers();
+  EXPECT_EQ(contact.pressure(contact.pairs().front(), x), 0.0);
+}
+TEST(SurfaceContact, StiffnessCanBeRaisedLater) {
+  const TriMesh plate = test::turned_over(test::plate(-0.02, 5.0, 2)), floor = test::plate(0.0, 5.0, 3);
+  SurfaceContact contact(make_particle_surface(plate.triangles), floor, {});
+  contact.update_stiffness(500.0);
+  const VecX x = test::stacked(plate);
+  contact.update_pairs(x);
+  EXPECT_NEAR(contact.pressure(contact.pairs().front(), x), 10.0, 1e-12);
+  EXPECT_THROW(contact.update_stiffness(0.0), Error);
+}
+TEST(SurfaceContact, RejectsBadOptionsWithTheirValue) {
+  const auto make = [](const ContactOptions& options) {
+    return SurfaceContact(make_particle_surface(ball.triangles), ball, options);
+  };
+  EXPECT_THROW(make({.stiffness = 0.0}), Error);
+  EXPECT_THROW(make({.minimum_gap = 4.0}), Error);
+  EXPECT_THROW(make({.facing = 1.0}), Error);
+  EXPECT_THROW(SurfaceContact(make_particle_surface(ball.triangles), TriMesh{}), Error);
+  try {
+    make({.search_distance = -2.0});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_input);
+    EXPECT_NE(std::string(error.what()).find("-2"), std::string::npos);
+  }
+}
+
+}  // namespace coxa::collide
