@@ -7,14 +7,18 @@
 
 namespace coxa {
 
-/// 2-simplex mesh (Delingette 1999): every vertex has exactly three neighbours; dual of a triangulation.
+/// 2-simplex mesh (Delingette 1999): every vertex has exactly three neighbours; dual of a
+/// triangulation.
 ///
-/// Vertex i of the simplex mesh is triangle i of the dual triangulation `dual`, so its neighbours are the
-/// triangles across that triangle's edges, and each face of the simplex mesh is a vertex of `dual`.
+/// Vertex i of the simplex mesh is triangle i of the dual triangulation `dual`, so its neighbours
+/// are the triangles across that triangle's edges, and each face of the simplex mesh is a vertex of
+/// `dual`.
 struct SimplexMesh {
-  Points points;        ///< V×3, mm
-  Triangles neighbours; ///< V×3 vertex numbers, counter-clockwise seen from outside
-  Triangles faces_of;   ///< V×3 face numbers; = triangles of the dual triangulation
+  Points points;         ///< V×3, mm
+  Triangles neighbours;  ///< V×3, counter-clockwise seen from outside: k is across the edge from
+                         ///< face k to face k+1
+  Triangles faces_of;    ///< V×3 face numbers, = triangles of the dual: face k lies between
+                         ///< neighbours k-1 and k
   Index n_faces = 0;
 
   Index n_vertices() const { return static_cast<Index>(points.rows()); }
@@ -26,25 +30,27 @@ struct SimplexParameters {
   double height = 0.0;                      ///< divided by sqrt(area of ABC): similarity-invariant
 };
 
-/// Topology of the dual of a closed, oriented, manifold triangulation; points are triangle centroids.
+/// Topology of the dual of a closed, oriented, manifold triangulation; points are triangle
+/// centroids.
 /// @throws Error bad_mesh if the surface is open, not manifold, or inconsistently oriented
 SimplexMesh make_simplex_mesh(const TriMesh& surface);
 
-/// Triangulation dual to the simplex mesh whose triangle centroids are (in the least-squares sense, with a
-/// tiny pull to the face centroids) the simplex vertices: conversion without shrinkage.
+/// Triangulation dual to the simplex mesh whose triangle centroids are (in the least-squares sense,
+/// with a tiny pull to the face centroids) the simplex vertices: conversion without shrinkage.
 TriMesh dual_surface(const SimplexMesh& mesh);
-
 
 /// Triangulation that keeps the simplex vertices and adds the centroid of each face (fan).
 TriMesh fan_surface(const SimplexMesh& mesh);
 
-/// Unit normal at every simplex vertex: normal of the triangle of its three neighbours, outward; V×3.
+/// Unit normal at every simplex vertex: normal of the triangle of its three neighbours, outward;
+/// V×3.
 Points simplex_normals(const SimplexMesh& mesh);
 
 /// Parameters of vertex position P with respect to neighbours A, B, C.
 SimplexParameters simplex_parameters(const Vec3& P, const Vec3& A, const Vec3& B, const Vec3& C);
 /// The position these parameters describe.
-Vec3 position_from(const SimplexParameters& parameters, const Vec3& A, const Vec3& B, const Vec3& C);
+Vec3 position_from(const SimplexParameters& parameters, const Vec3& A, const Vec3& B,
+                   const Vec3& C);
 /// Simplex angle phi in (-pi, pi], 0 when flat, positive where the surface is convex. rad.
 double simplex_angle(const Vec3& P, const Vec3& A, const Vec3& B, const Vec3& C);
 
