@@ -111,27 +111,4 @@ std::optional<FacedPoint> find_faced_point(const OtherSurface& other, const Vec3
   return faced;
 }
 
-Points triangle_areas(const Points& points, const Triangles& triangles) {
-  Points areas(triangles.rows(), 3);
-  for (Index t = 0; t < triangles.rows(); ++t) {
-    const Vec3 a = points.row(triangles(t, 0)), b = points.row(triangles(t, 1)),
-               c = points.row(triangles(t, 2));
-    areas.row(t) = 0.5 * (b - a).cross(c - a).transpose();
-  }
-  return areas;
-}
-
-Points vertex_normals_of(const Points& points, const Triangles& triangles) {
-  const Points areas = triangle_areas(points, triangles);
-  Points normals = Points::Zero(points.rows(), 3);
-  for (Index t = 0; t < triangles.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) normals.row(triangles(t, k)) += areas.row(t);
-  }
-  for (Index v = 0; v < points.rows(); ++v) {
-    const double length = normals.row(v).norm();
-    if (length > 0.0) normals.row(v) /= length;
-  }
-  return normals;
-}
-
 }  // namespace coxa::collide

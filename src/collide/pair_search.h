@@ -26,10 +26,4 @@ struct FacedPoint {
 std::optional<FacedPoint> find_faced_point(const OtherSurface& other, const Vec3& point,
                                            const Vec3& normal, const ContactOptions& options);
 
-/// Area vectors of the triangles (along the normal, length the area, mm²), T×3.
-Points triangle_areas(const Points& points, const Triangles& triangles);
-
-/// Area-weighted unit normals of the vertices, V×3.
-Points vertex_normals_of(const Points& points, const Triangles& triangles);
-
 }  // namespace coxa::collide

@@ -1,9 +1,9 @@
 #include <coxa/collide/particle_surface.h>
 
 #include <coxa/core/error.h>
+#include <coxa/mesh/topology.h>
 
 #include <algorithm>
-#include <array>
 
 namespace coxa::collide {
 
@@ -69,22 +69,11 @@ Points surface_points(const ParticleSurface& surface, const VecX& x) {
 }
 
 Eigen::Matrix<bool, Eigen::Dynamic, 3, Eigen::RowMajor> boundary_edges(const Triangles& triangles) {
-  // (low vertex, high vertex, triangle, corner): equal edges become neighbours when sorted
-  std::vector<std::array<Index, 4>> edges;
-  edges.reserve(static_cast<std::size_t>(triangles.size()));
-  for (Index t = 0; t < triangles.rows(); ++t) {
-    for (Index k = 0; k < 3; ++k) {
-      const Index a = triangles(t, k), b = triangles(t, (k + 1) % 3);
-      edges.push_back({std::min(a, b), std::max(a, b), t, k});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
+  const MeshEdges edges = mesh_edges({Points(), triangles});
   Eigen::Matrix<bool, Eigen::Dynamic, 3, Eigen::RowMajor> boundary(triangles.rows(), 3);
-  const auto same = [](const auto& e, const auto& f) { return e[0] == f[0] && e[1] == f[1]; };
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const bool shared = (i > 0 && same(edges[i], edges[i - 1])) ||
-                        (i + 1 < edges.size() && same(edges[i], edges[i + 1]));
-    boundary(edges[i][2], edges[i][3]) = !shared;
+  for (Index t = 0; t < triangles.rows(); ++t) {
+    for (int k = 0; k < 3; ++k)
+      boundary(t, k) = edges.triangles[edges.of_triangle(t, k)].size() == 1;
   }
   return boundary;
 }

@@ -2,6 +2,8 @@
 
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
+#include <coxa/mesh/measures.h>
+#include <coxa/mesh/vertex_normals.h>
 
 #include <algorithm>
 #include <cmath>
@@ -118,17 +120,17 @@ void SurfaceContact::update_obstacle(const Points& points) {
   tree_->update_points(points);
 }
 
-void SurfaceContact::update_areas(const Points& areas) {
+void SurfaceContact::update_areas(const VecX& areas) {
   if (options_.quadrature != ContactQuadrature::vertices) {
     const auto rule = quadrature_points(options_.quadrature);
     for (std::size_t s = 0; s < samples_.size(); ++s) {
-      samples_[s].area = rule[s % rule.size()].weight * areas.row(samples_[s].triangle).norm();
+      samples_[s].area = rule[s % rule.size()].weight * areas[samples_[s].triangle];
     }
     return;
   }
   VecX vertex_area = VecX::Zero(slave_.n_vertices());
   for (Index t = 0; t < slave_.n_triangles(); ++t) {
-    for (int k = 0; k < 3; ++k) vertex_area[slave_.triangles(t, k)] += areas.row(t).norm() / 3.0;
+    for (int k = 0; k < 3; ++k) vertex_area[slave_.triangles(t, k)] += areas[t] / 3.0;
   }
   for (ContactSample& sample : samples_) {
     int k = 0;
@@ -139,12 +141,11 @@ void SurfaceContact::update_areas(const Points& areas) {
 
 void SurfaceContact::update_pairs(const VecX& x) {
   prepare_other(x);
-  const Points points = surface_points(slave_, x);
-  const Points areas = triangle_areas(points, slave_.triangles);
-  const Points normals = vertex_normals_of(points, slave_.triangles);
-  const Points other_normals = vertex_normals_of(other_mesh_.points, other_mesh_.triangles);
+  const TriMesh slave{surface_points(slave_, x), slave_.triangles};
+  const Points facet_normals = triangle_normals(slave), normals = vertex_normals(slave);
+  const Points other_normals = vertex_normals(other_mesh_);
   const OtherSurface other{*tree_, other_normals, boundary_edge_, boundary_vertex_};
-  update_areas(areas);
+  update_areas(triangle_areas(slave));
 
   const bool at_vertices = options_.quadrature == ContactQuadrature::vertices;
   std::vector<Candidate> candidates(samples_.size());
@@ -153,10 +154,11 @@ void SurfaceContact::update_pairs(const VecX& x) {
     Vec3 point = Vec3::Zero(), vertex_normal = Vec3::Zero();
     for (int k = 0; k < 3; ++k) {
       const Index v = slave_.triangles(sample.triangle, k);
-      point += sample.barycentric[k] * points.row(v).transpose();
+      point += sample.barycentric[k] * slave.points.row(v).transpose();
       vertex_normal += sample.barycentric[k] * normals.row(v).transpose();
     }
-    const Vec3 normal = at_vertices ? vertex_normal : areas.row(sample.triangle).transpose();
+    const Vec3 normal =
+        at_vertices ? vertex_normal : facet_normals.row(sample.triangle).transpose();
     const auto faced = find_faced_point(other, point, normal.normalized(), options_);
     if (faced) candidates[static_cast<std::size_t>(s)] = {true, *faced};
   });

@@ -9,7 +9,8 @@
 
 namespace coxa::collide {
 
-const TriMesh big = test::icosphere(3, 10.0, Vec3::Zero()), small = test::icosphere(3, 2.0, Vec3::Zero());
+const TriMesh big = test::icosphere(3, 10.0, Vec3::Zero()),
+              small = test::icosphere(3, 2.0, Vec3::Zero());
 // icosphere facets of level 3 lie at most this share inside the sphere
 constexpr double kFacetShare = 0.012;
 

@@ -151,7 +151,8 @@ TEST(SurfaceContact, IsPushedOutOfAClosedObstacle) {
   EXPECT_GT(up, 0.0);
 }
 TEST(SurfaceContact, FollowsAMovedObstacle) {
-  const TriMesh plate = test::turned_over(test::plate(0.5, 5.0, 2)), floor = test::plate(0.0, 5.0, 3);
+  const TriMesh plate = test::turned_over(test::plate(0.5, 5.0, 2)),
+                floor = test::plate(0.0, 5.0, 3);
   SurfaceContact contact(make_particle_surface(plate.triangles), floor, {});
   const VecX x = test::stacked(plate);
   contact.update_pairs(x);
@@ -164,7 +165,8 @@ TEST(SurfaceContact, FollowsAMovedObstacle) {
   EXPECT_THROW(contact.update_obstacle(Points(raised.topRows(3))), Error);
 }
 TEST(SurfaceContact, MultipliersCarryTheLoadAtZeroPenetration) {
-  const TriMesh plate = test::turned_over(test::plate(-0.02, 5.0, 2)), floor = test::plate(0.0, 5.0, 3);
+  const TriMesh plate = test::turned_over(test::plate(-0.02, 5.0, 2)),
+                floor = test::plate(0.0, 5.0, 3);
   SurfaceContact contact(make_particle_surface(plate.triangles), floor, {});
   VecX x = test::stacked(plate);
   contact.update_pairs(x);
@@ -175,7 +177,8 @@ TEST(SurfaceContact, MultipliersCarryTheLoadAtZeroPenetration) {
   EXPECT_EQ(contact.pressure(contact.pairs().front(), x), 0.0);
 }
 TEST(SurfaceContact, StiffnessCanBeRaisedLater) {
-  const TriMesh plate = test::turned_over(test::plate(-0.02, 5.0, 2)), floor = test::plate(0.0, 5.0, 3);
+  const TriMesh plate = test::turned_over(test::plate(-0.02, 5.0, 2)),
+                floor = test::plate(0.0, 5.0, 3);
   SurfaceContact contact(make_particle_surface(plate.triangles), floor, {});
   contact.update_stiffness(500.0);
   const VecX x = test::stacked(plate);

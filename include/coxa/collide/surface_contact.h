@@ -103,7 +103,7 @@ class SurfaceContact : public dynamics::Force {
  private:
   struct Candidate;
   void make_samples();
-  void update_areas(const Points& areas);
+  void update_areas(const VecX& areas);
   void prepare_other(const VecX& x);
   void append_pair(Index sample, const Candidate& candidate, double area);
 
