@@ -69,7 +69,7 @@ Points surface_points(const ParticleSurface& surface, const VecX& x) {
 }
 
 Eigen::Matrix<bool, Eigen::Dynamic, 3, Eigen::RowMajor> boundary_edges(const Triangles& triangles) {
-  const MeshEdges edges = mesh_edges({Points(), triangles});
+  const MeshEdges edges = mesh_edges({Points::Zero(triangles.maxCoeff() + 1, 3), triangles});
   Eigen::Matrix<bool, Eigen::Dynamic, 3, Eigen::RowMajor> boundary(triangles.rows(), 3);
   for (Index t = 0; t < triangles.rows(); ++t) {
     for (int k = 0; k < 3; ++k)
