@@ -1,9 +1,10 @@
 #include <coxa/solve/block_matrix.h>
 
 #include <coxa/core/error.h>
-#include <coxa/core/parallel.h>
 
 #include <algorithm>
+
+#include "rows.h"
 
 namespace coxa::solve {
 namespace {
@@ -38,7 +39,7 @@ BlockMatrix::BlockMatrix(Index n, const std::vector<std::pair<Index, Index>>& pa
 
   // sort each row and drop its duplicates
   std::vector<std::int64_t> length(static_cast<Size>(n));
-  parallel_for(n, [&](Index i) {
+  for_rows(n, [&](Index i) {
     const auto begin = grouped.begin() + start[static_cast<Size>(i)];
     const auto end = grouped.begin() + start[static_cast<Size>(i) + 1];
     std::sort(begin, end);
@@ -47,7 +48,7 @@ BlockMatrix::BlockMatrix(Index n, const std::vector<std::pair<Index, Index>>& pa
   row_start_.assign(static_cast<Size>(n) + 1, 0);
   for (Size i = 0; i < length.size(); ++i) row_start_[i + 1] = row_start_[i] + length[i];
   columns_.resize(static_cast<Size>(row_start_.back()));
-  parallel_for(n, [&](Index i) {
+  for_rows(n, [&](Index i) {
     const Size row = static_cast<Size>(i);
     std::copy_n(grouped.begin() + start[row], length[row], columns_.begin() + row_start_[row]);
   });
@@ -55,7 +56,7 @@ BlockMatrix::BlockMatrix(Index n, const std::vector<std::pair<Index, Index>>& pa
 }
 
 void BlockMatrix::set_zero() {
-  parallel_for(n(), [&](Index i) {
+  for_rows(n(), [&](Index i) {
     const Size row = static_cast<Size>(i);
     std::fill(blocks_.begin() + row_start_[row], blocks_.begin() + row_start_[row + 1],
               Mat3::Zero());
@@ -74,7 +75,7 @@ void BlockMatrix::multiply(const VecX& x, VecX& y) const {
   require(x.size() == 3 * Eigen::Index{n()}, "a matrix of ", n(), " block rows cannot multiply ",
           x.size(), " values");
   y.resize(x.size());
-  parallel_for(n(), [&](Index i) { y.segment<3>(3 * Eigen::Index{i}) = row_times(i, x.data()); });
+  for_rows(n(), [&](Index i) { y.segment<3>(3 * Eigen::Index{i}) = row_times(i, x.data()); });
 }
 
 }  // namespace coxa::solve

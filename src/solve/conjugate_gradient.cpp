@@ -1,7 +1,6 @@
 #include <coxa/solve/conjugate_gradient.h>
 
 #include <coxa/core/error.h>
-#include <coxa/core/parallel.h>
 
 #include <Eigen/LU>
 
@@ -9,19 +8,15 @@
 #include <array>
 #include <cmath>
 
+#include "rows.h"
+
 namespace coxa::solve {
 namespace {
-
-// chunks per vector operation, and the fewest block rows worth a task of its own; both are
-// functions of n only, so sums do not depend on the number of threads
-constexpr Index kMaxChunks = 64;
-constexpr Index kMinRows = 256;
 
 /// The vectors of one solve, and sums over them in a fixed order.
 class Workspace {
  public:
   Workspace(const BlockMatrix& A, VecX& x) : A_(A), x_(x), n_(A.n()) {
-    chunks_ = std::clamp<Index>(n_ / kMinRows, 1, kMaxChunks);
     r.resize(x.size());
     p.resize(x.size());
     q.resize(x.size());
@@ -78,19 +73,18 @@ class Workspace {
   VecX r, p, q, z;
 
  private:
-  /// Runs accumulate(i, total) over all block rows chunk by chunk and adds the chunks in order.
+  /// Runs accumulate(i, total) over all block rows range by range and adds the ranges in order.
   template <class Accumulate>
   double sum(const Accumulate& accumulate) {
-    std::array<double, kMaxChunks> part;
-    parallel_for(chunks_, [&](Index chunk) {
-      const auto begin = static_cast<Index>(std::int64_t{n_} * chunk / chunks_);
-      const auto end = static_cast<Index>(std::int64_t{n_} * (chunk + 1) / chunks_);
+    std::array<double, kMaxTasks> part;
+    for_row_ranges(n_, [&](Index task, Index begin, Index end) {
       double total = 0.0;
       for (Index i = begin; i < end; ++i) total = accumulate(i, total);
-      part[static_cast<std::size_t>(chunk)] = total;
+      part[static_cast<std::size_t>(task)] = total;
     });
     double total = 0.0;
-    for (Index chunk = 0; chunk < chunks_; ++chunk) total += part[static_cast<std::size_t>(chunk)];
+    for (Index task = 0; task < task_count(n_); ++task)
+      total += part[static_cast<std::size_t>(task)];
     return total;
   }
 
@@ -98,7 +92,7 @@ class Workspace {
   /// diagonal.
   void invert_diagonal() {
     inverse_diagonal_.resize(static_cast<std::size_t>(n_));
-    parallel_for(n_, [&](Index i) {
+    for_rows(n_, [&](Index i) {
       const Mat3& block = A_.blocks()[static_cast<std::size_t>(A_.slot(i, i))];
       const double minor = block(0, 0) * block(1, 1) - block(0, 1) * block(1, 0);
       const double determinant = block.determinant();
@@ -119,7 +113,6 @@ class Workspace {
   const BlockMatrix& A_;
   VecX& x_;
   Index n_;
-  Index chunks_;
   std::vector<Mat3> inverse_diagonal_;
 };
 
