@@ -1,0 +1,38 @@
+#pragma once
+
+#include <coxa/segment/model_fit.h>
+#include <coxa/segment/profile_search.h>
+#include <coxa/shape/atlas.h>
+
+namespace coxa::segment {
+
+/// A structure on its way from the atlas to the image.
+///
+/// @note refers to the model, which must outlive it.
+struct Body {
+  const shape::StructureModel* model = nullptr;
+  Points points;       ///< V×3 finest level, LPS mm
+  ModelFit fit;        ///< the shape model's opinion
+  ProfileMatch match;  ///< of the last iteration, finest level
+  VecX seat;           ///< V: 1 on vertices that lie on the host's surface; empty without a host
+};
+
+/// The finest level's topology with the body's positions.
+SimplexMesh finest_mesh(const Body& body);
+
+/// Positions of a level's vertices that belong to finest positions `fine`: the level's mean shape
+/// at `pose`, moved by the mean displacement of the fine vertices that follow each coarse one.
+/// (Means of positions would shrink.)
+Points level_points(const SimplexHierarchy& hierarchy, std::size_t level, const Points& fine,
+                    const Similarity& pose);
+
+/// Every row of `points` at the pose.
+Points posed(const Points& points, const Similarity& pose);
+
+/// A field on the finest level -> means at a level, and back.
+Points field_at_level(const SimplexHierarchy& hierarchy, std::size_t level, const Points& field,
+                      const VecX& weight);
+VecX values_at_level(const SimplexHierarchy& hierarchy, std::size_t level, const VecX& values);
+Points field_at_finest(const SimplexHierarchy& hierarchy, std::size_t level, const Points& field);
+
+}  // namespace coxa::segment

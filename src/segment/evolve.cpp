@@ -1,0 +1,184 @@
+#include <coxa/segment/evolve.h>
+
+#include "level_forces.h"
+
+#include <coxa/collide/surface_contact.h>
+#include <coxa/core/error.h>
+#include <coxa/dynamics/integrators.h>
+#include <coxa/segment/force_field.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace coxa::segment {
+namespace {
+
+/// s. With unit masses and stiffnesses of about one, a step goes nine tenths of the way to
+/// equilibrium; the masses bound how far a vertex may go that the forces hardly hold.
+constexpr double kTimeStep = 3.0;
+/// Relative residual of the linear solve of a step: far below the error of the forces.
+constexpr double kLinearTolerance = 1e-4;
+/// Passes of local smoothing of the force field after each vertex has chosen.
+constexpr int kFieldSmoothing = 2;
+/// Penalty of a match at the end of the search range.
+constexpr double kShiftPenalty = 0.1;
+
+using Contacts = std::vector<std::unique_ptr<collide::SurfaceContact>>;
+
+std::size_t level_of(const Body& body, const Resolution& resolution) {
+  const std::size_t finest = body.model->hierarchy.levels.size() - 1;
+  return finest - std::min(finest, resolution.coarsening);
+}
+
+const shape::ProfileSet& profiles_for(const Body& body, const std::string& contrast) {
+  for (const shape::ProfileSet& set : body.model->profiles) {
+    if (set.contrast == contrast) return set;
+  }
+  fail(ErrorCode::bad_input, "the atlas has no '", contrast, "' profiles for ", body.model->name);
+}
+
+/// The displacement the image asks for at the finest vertices, regularised.
+Points regularised_field(const Body& body, const Points& normals, const Resolution& resolution) {
+  const SimplexHierarchy& hierarchy = body.model->hierarchy;
+  const VecX& confidence = body.match.confidence;
+  const Points raw = body.match.shift.asDiagonal() * normals;
+  const Points local =
+      smoothed_field(raw, confidence, hierarchy.levels.back().neighbours, kFieldSmoothing);
+  const Points combined =
+      combined_levels(local, confidence, hierarchy.maps, resolution.level_share);
+  return regularised_by_affine(body.points, combined, confidence, resolution.affine_k);
+}
+
+/// Contact between all pairs of bodies and with their obstacles.
+Contacts make_contacts(const std::vector<LevelForces>& levels, const Surroundings& surroundings,
+                       const SegmentOptions& options) {
+  Contacts contacts;
+  if (options.weights.contact <= 0.0) return contacts;
+  collide::ContactOptions contact;
+  contact.stiffness = options.weights.contact;
+  contact.minimum_gap = options.minimum_gap;
+  contact.facing = 0.0;
+  contact.quadrature = collide::ContactQuadrature::vertices;
+  for (std::size_t a = 0; a < levels.size(); ++a) {
+    const auto slave = collide::make_particle_surface(levels[a].mesh(), levels[a].first());
+    for (const TriMesh& obstacle : surroundings.obstacles[a]) {
+      contacts.push_back(std::make_unique<collide::SurfaceContact>(slave, obstacle, contact));
+    }
+    for (std::size_t b = 0; b < levels.size(); ++b) {
+      if (a == b) continue;
+      contacts.push_back(std::make_unique<collide::SurfaceContact>(
+          slave, collide::make_particle_surface(levels[b].mesh(), levels[b].first()), contact));
+    }
+  }
+  return contacts;
+}
+
+/// One backward Euler step from rest; positions are changed in place.
+void update_by_step(VecX& x, const std::vector<LevelForces>& levels, Contacts& contacts) {
+  std::vector<const dynamics::Force*> forces;
+  for (const LevelForces& level : levels) {
+    for (const dynamics::Force* force : level.forces()) forces.push_back(force);
+  }
+  for (const auto& contact : contacts) {
+    contact->update_pairs(x);
+    forces.push_back(contact.get());
+  }
+  const Index n = static_cast<Index>(x.size() / 3);
+  dynamics::Particles particles{x, VecX::Zero(x.size()), VecX::Ones(n)};
+  dynamics::Stepper stepper(n, forces);
+  dynamics::StepOptions step;
+  step.time_step = kTimeStep;
+  step.linear = {.tolerance = kLinearTolerance, .max_iterations = 200};
+  stepper.update_step(particles, {}, step);
+  x = particles.x;
+}
+
+/// Refits the statistical model to where the image pulls the body.
+void update_fit(Body& body, const Points& field, const Resolution& resolution) {
+  body.fit =
+      fit_model(*body.model, body.points + field, body.match.confidence, resolution.model_noise);
+}
+
+}  // namespace
+
+ProfileMatch match_body(const Body& body, std::span<const PreparedImage> images,
+                        const Resolution& resolution, double gradient_weight) {
+  const Points normals = simplex_normals(finest_mesh(body));
+  const ProfileSearch search{.range = resolution.range,
+                             .window = resolution.window,
+                             .gradient_weight = gradient_weight,
+                             .shift_penalty = kShiftPenalty,
+                             .image_sigma = resolution.image_sigma};
+  ProfileScores scores;
+  VecX reliability;
+  for (const PreparedImage& image : images) {
+    const shape::ProfileSet& reference = profiles_for(body, image.contrast);
+    ProfileScores more = score_profiles(image, body.points, normals, reference, search);
+    if (reliability.size() == 0) {
+      scores = std::move(more);
+      reliability = reference.reliability;
+    } else {
+      update_combined(scores, more);
+      reliability = reliability.cwiseMax(reference.reliability);
+    }
+  }
+  update_smoothed(scores, body.model->hierarchy.levels.back().neighbours, reliability,
+                  resolution.score_smoothing);
+  return best_match(scores, reliability);
+}
+
+int update_bodies(std::vector<Body>& bodies, const Surroundings& surroundings,
+                  const Resolution& resolution, const SegmentOptions& options,
+                  const Monitor& monitor) {
+  std::vector<LevelForces> levels;
+  Index n_particles = 0;
+  for (const Body& body : bodies) {
+    levels.emplace_back(body, level_of(body, resolution), n_particles);
+    n_particles += levels.back().n();
+  }
+  VecX x(3 * Eigen::Index{n_particles});
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    monitor.check_cancelled();
+    monitor.progress("segment", iteration / static_cast<double>(options.iterations));
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      Body& body = bodies[b];
+      body.match = match_body(body, surroundings.images, resolution, options.gradient_weight);
+      const Points normals = simplex_normals(finest_mesh(body));
+      const Points field = regularised_field(body, normals, resolution);
+      update_fit(body, field, resolution);
+      if (resolution.rigid) continue;
+      const Points positions = level_points(body.model->hierarchy, level_of(body, resolution),
+                                            body.points, body.fit.pose);
+      for (Index v = 0; v < levels[b].n(); ++v) {
+        x.segment<3>(3 * (levels[b].first() + v)) = positions.row(v).transpose();
+      }
+      levels[b].prepare(body, positions, field, options.weights, surroundings.hosts[b],
+                        options.minimum_gap);
+    }
+    const VecX start = x;
+    if (!resolution.rigid) {
+      Contacts contacts = make_contacts(levels, surroundings, options);
+      update_by_step(x, levels, contacts);
+    }
+    // carry the level's moves to the finest vertices
+    double move = 0.0, count = 0.0;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      Body& body = bodies[b];
+      Points change;
+      if (resolution.rigid) {
+        change = body.fit.points - body.points;
+      } else {
+        const Points level_change = Eigen::Map<const Points>(
+            VecX(x - start).data() + 3 * Eigen::Index{levels[b].first()}, levels[b].n(), 3);
+        change = field_at_finest(body.model->hierarchy, level_of(body, resolution), level_change);
+      }
+      body.points += change;
+      move += change.rowwise().norm().sum();
+      count += static_cast<double>(change.rows());
+    }
+    if (move / count < options.tolerance) return iteration + 1;
+  }
+  return options.iterations;
+}
+
+}  // namespace coxa::segment

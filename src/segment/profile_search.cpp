@@ -1,0 +1,227 @@
+#include <coxa/segment/profile_search.h>
+
+#include <coxa/core/error.h>
+#include <coxa/core/parallel.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace coxa::segment {
+namespace {
+
+/// Standard deviation, as a share of the image's intensity range, below which a profile counts as
+/// flat: about twice the noise of a clinical image, so that noise alone correlates with nothing.
+constexpr double kFlatShare = 0.03;
+/// Share of a profile's weight that must lie in the image.
+constexpr double kSeenShare = 0.75;
+/// mm². Variance by which 0.8 mm voxels blur a profile: the references were learned at about that.
+constexpr double kTrainedVariance = 0.16;
+/// A step of this share of the intensity range over two samples counts as a full border.
+constexpr double kFullStep = 0.35;
+
+/// Blur along the normal: a box of one voxel and its linear interpolation, variance spacing²/4 per
+/// axis.
+double blur_sigma(const Volume& volume, const Vec3& normal, double image_sigma) {
+  const Vec3 along = (volume.direction.transpose() * normal).cwiseProduct(volume.spacing);
+  const double voxel = 0.25 * along.squaredNorm();
+  return std::sqrt(image_sigma * image_sigma + std::max(0.0, voxel - kTrainedVariance));
+}
+
+/// Gaussian smoothing of a short profile, weights renormalised at its ends.
+VecX smoothed_profile(const VecX& profile, double sigma_samples) {
+  if (sigma_samples < 0.2) return profile;
+  const Index n = static_cast<Index>(profile.size());
+  VecX out(n);
+  for (Index i = 0; i < n; ++i) {
+    double sum = 0.0, total = 0.0;
+    for (Index j = 0; j < n; ++j) {
+      const double t = (i - j) / sigma_samples;
+      const double w = std::exp(-0.5 * t * t);
+      sum += w * profile[j];
+      total += w;
+    }
+    out[i] = sum / total;
+  }
+  return out;
+}
+
+/// A reference ready for correlation: weighted mean 0, weighted variance 1.
+struct Reference {
+  VecX weight;  ///< sums to 1
+  VecX value;
+  double slope = 0;  ///< at the border, share of the profile's range, in [-1, 1]
+  bool informative = false;
+};
+
+Reference make_reference(const VecX& profile, Index n_inside, double step, double window) {
+  Reference r;
+  const Index n = static_cast<Index>(profile.size());
+  r.weight.resize(n);
+  for (Index k = 0; k < n; ++k) {
+    const double t = (k - n_inside) * step / window;
+    r.weight[k] = std::exp(-0.5 * t * t);
+  }
+  r.weight /= r.weight.sum();
+  r.value = profile.array() - r.weight.dot(profile);
+  const double variance = r.weight.dot(r.value.cwiseAbs2());
+  const double extent = profile.maxCoeff() - profile.minCoeff();
+  r.informative = variance > 1e-12;
+  if (!r.informative) return r;
+  r.value /= std::sqrt(variance);
+  const Index before = std::max<Index>(0, n_inside - 1), after = std::min(n - 1, n_inside + 1);
+  r.slope = std::clamp((profile[after] - profile[before]) / extent, -1.0, 1.0);
+  return r;
+}
+
+/// Correlation of the reference with samples [first, first + n); NaN where too little of it is in
+/// the image.
+double correlation(const Reference& r, const VecX& samples, Index first, double flat) {
+  const Index n = static_cast<Index>(r.value.size());
+  double weight = 0.0, mean = 0.0, reference_mean = 0.0;
+  for (Index k = 0; k < n; ++k) {
+    const double I = samples[first + k];
+    if (std::isnan(I)) continue;
+    weight += r.weight[k];
+    mean += r.weight[k] * I;
+    reference_mean += r.weight[k] * r.value[k];
+  }
+  if (weight < kSeenShare) return kNaN;
+  mean /= weight;
+  reference_mean /= weight;
+  double cross = 0.0, variance = 0.0, reference_variance = 0.0;
+  for (Index k = 0; k < n; ++k) {
+    const double I = samples[first + k];
+    if (std::isnan(I)) continue;
+    const double a = I - mean, b = r.value[k] - reference_mean;
+    cross += r.weight[k] * a * b;
+    variance += r.weight[k] * a * a;
+    reference_variance += r.weight[k] * b * b;
+  }
+  if (reference_variance < 1e-12) return 0.0;
+  return cross / std::sqrt((variance + weight * flat * flat) * reference_variance);
+}
+
+/// Samples along the normal from -n_before to +n_after steps.
+VecX sample_line(const Volume& volume, const Vec3& start, const Vec3& normal, double step,
+                 Index n_before, Index n_after) {
+  VecX samples(n_before + n_after + 1);
+  for (Index j = -n_before; j <= n_after; ++j) {
+    samples[n_before + j] = sample(volume, start + (j * step) * normal);
+  }
+  return samples;
+}
+
+/// Place of the largest value of three equally spaced ones relative to the middle, in steps.
+double parabola_offset(double before, double middle, double after) {
+  const double bend = before - 2.0 * middle + after;
+  if (!(bend < -1e-12)) return 0.0;
+  return std::clamp(0.5 * (before - after) / bend, -0.5, 0.5);
+}
+
+}  // namespace
+
+ProfileScores score_profiles(const PreparedImage& image, const Points& positions,
+                             const Points& normals, const shape::ProfileSet& reference,
+                             const ProfileSearch& search) {
+  const Index n_profile = static_cast<Index>(reference.mean.cols());
+  const Index n_outside = n_profile - 1 - reference.n_inside;
+  ProfileScores scores;
+  scores.step = reference.step;
+  scores.n_each_way = static_cast<Index>(std::ceil(search.range / reference.step));
+  const Index R = scores.n_each_way, V = static_cast<Index>(positions.rows());
+  scores.score = MatX::Constant(V, 2 * R + 1, kNaN);
+  scores.correlation = scores.score;
+  const double flat = kFlatShare * image.intensity_range;
+
+  parallel_for(V, [&](Index v) {
+    const Vec3 normal = normals.row(v).transpose();
+    const VecX line = sample_line(image.volume, positions.row(v).transpose(), normal, scores.step,
+                                  reference.n_inside + R, n_outside + R);
+    const double sigma = blur_sigma(image.volume, normal, search.image_sigma);
+    const VecX row = reference.mean.row(v).transpose();
+    const Reference r = make_reference(smoothed_profile(row, sigma / scores.step),
+                                       reference.n_inside, scores.step, search.window);
+    if (!r.informative) return;
+    for (Index s = 0; s <= 2 * R; ++s) {
+      const double c = correlation(r, line, s, flat);
+      const Index centre = s + reference.n_inside;
+      if (std::isnan(c) || std::isnan(line[centre])) continue;
+      const double before = line[std::max<Index>(0, centre - 1)];
+      const double after = line[std::min<Index>(static_cast<Index>(line.size()) - 1, centre + 1)];
+      const double step = (after - before) / (kFullStep * image.intensity_range);
+      const double border = std::isnan(step) ? 0.0 : r.slope * std::clamp(step, -1.0, 1.0);
+      const double relative = R > 0 ? (s - R) / static_cast<double>(R) : 0.0;
+      scores.correlation(v, s) = c;
+      scores.score(v, s) =
+          c + search.gradient_weight * border - search.shift_penalty * relative * relative;
+    }
+  });
+  return scores;
+}
+
+void update_combined(ProfileScores& scores, const ProfileScores& other) {
+  COXA_ASSERT(scores.score.rows() == other.score.rows() &&
+              scores.score.cols() == other.score.cols());
+  for (Eigen::Index i = 0; i < scores.score.size(); ++i) {
+    const double a = scores.score.data()[i], b = other.score.data()[i];
+    if (std::isnan(b)) continue;
+    const double share = std::isnan(a) ? 0.0 : 0.5;
+    double& c = scores.correlation.data()[i];
+    scores.score.data()[i] = share > 0.0 ? share * (a + b) : b;
+    c = share > 0.0 ? share * (c + other.correlation.data()[i]) : other.correlation.data()[i];
+  }
+}
+
+void update_smoothed(ProfileScores& scores, const Triangles& neighbours, const VecX& reliability,
+                     int passes) {
+  for (int pass = 0; pass < passes; ++pass) {
+    const MatX previous = scores.score;
+    parallel_for(previous.rows(), [&](Index v) {
+      const Index around[4] = {v, neighbours(v, 0), neighbours(v, 1), neighbours(v, 2)};
+      for (Index s = 0; s < previous.cols(); ++s) {
+        double sum = 0.0, total = 0.0;
+        for (const Index u : around) {
+          if (std::isnan(previous(u, s))) continue;
+          const double weight = 1e-3 + reliability[u];
+          sum += weight * previous(u, s);
+          total += weight;
+        }
+        if (!std::isnan(previous(v, s)) && total > 0.0) scores.score(v, s) = sum / total;
+      }
+    });
+  }
+}
+
+ProfileMatch best_match(const ProfileScores& scores, const VecX& reliability) {
+  const Index V = static_cast<Index>(scores.score.rows());
+  const Index columns = static_cast<Index>(scores.score.cols());
+  const Index apart = std::max<Index>(2, static_cast<Index>(std::lround(1.5 / scores.step)));
+  ProfileMatch match{VecX::Zero(V), VecX::Zero(V), VecX::Zero(V), VecX::Zero(V)};
+  parallel_for(V, [&](Index v) {
+    const auto row = scores.score.row(v);
+    match.seen[v] = std::isnan(row[scores.n_each_way]) ? 0.0 : 1.0;
+    Index best = columns;
+    for (Index s = 0; s < columns; ++s) {
+      if (!std::isnan(row[s]) && (best == columns || row[s] > row[best])) best = s;
+    }
+    if (best == columns || match.seen[v] == 0.0) return;
+    // how far the best stands above every match somewhere else
+    double rival = -1.0;
+    for (Index s = 0; s < columns; ++s) {
+      if (std::abs(s - best) >= apart && !std::isnan(row[s])) rival = std::max(rival, row[s]);
+    }
+    const double distinct = std::clamp((row[best] - rival) / 0.3, 0.0, 1.0);
+    const bool at_end = best == 0 || best == columns - 1;
+    double offset = 0.0;
+    if (!at_end && !std::isnan(row[best - 1]) && !std::isnan(row[best + 1])) {
+      offset = parabola_offset(row[best - 1], row[best], row[best + 1]);
+    }
+    match.shift[v] = (best - scores.n_each_way + offset) * scores.step;
+    match.correlation[v] = scores.correlation(v, best);
+    match.confidence[v] = std::clamp(match.correlation[v], 0.0, 1.0) * reliability[v] *
+                          (0.3 + 0.7 * distinct) * (at_end && columns > 1 ? 0.3 : 1.0);
+  });
+  return match;
+}
+
+}  // namespace coxa::segment

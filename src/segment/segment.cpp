@@ -1,0 +1,262 @@
+#include <coxa/segment/segment.h>
+
+#include "result.h"
+
+#include <coxa/core/error.h>
+#include <coxa/segment/evolve.h>
+#include <coxa/segment/placement.h>
+#include <coxa/segment/seat.h>
+
+#include <algorithm>
+#include <set>
+
+namespace coxa::segment {
+namespace {
+
+void check(const SegmentOptions& options) {
+  require(!options.structures.empty(), "no structure is asked for");
+  require(options.landmark_error >= 0.0, "landmark_error must be at least 0 mm, got ",
+          options.landmark_error);
+  require(options.search_range > 0.0, "search_range must be positive, got ", options.search_range,
+          " mm");
+  require(options.gradient_weight >= 0.0, "gradient_weight must be at least 0, got ",
+          options.gradient_weight);
+  require(options.minimum_gap >= 0.0, "minimum_gap must be at least 0 mm, got ",
+          options.minimum_gap);
+  require(options.iterations >= 1, "iterations must be at least 1, got ", options.iterations);
+  require(options.tolerance >= 0.0, "tolerance must be at least 0 mm, got ", options.tolerance);
+  require(options.minimum_quality >= 0.0 && options.minimum_quality <= 1.0,
+          "minimum_quality must be in [0, 1], got ", options.minimum_quality);
+  const ForceWeights& w = options.weights;
+  require(std::min({w.image, w.shape, w.smoothing, w.memory, w.contact}) >= 0.0,
+          "the force weights must be at least 0");
+}
+
+/// Bones: the pose and modes first, over a long way in a smooth image; then freer, finer, nearer.
+std::vector<Resolution> bone_resolutions(double range) {
+  return {{.coarsening = 3,
+           .range = range,
+           .image_sigma = 1.5,
+           .window = 5.0,
+           .affine_k = 0.0,
+           .level_share = 0.3,
+           .score_smoothing = 12,
+           .model_noise = 3.0,
+           .rigid = true},
+          {.coarsening = 3,
+           .range = 0.6 * range,
+           .image_sigma = 1.0,
+           .window = 4.0,
+           .affine_k = 0.3,
+           .level_share = 0.3,
+           .score_smoothing = 10,
+           .model_noise = 2.0},
+          {.coarsening = 2,
+           .range = 0.4 * range,
+           .image_sigma = 0.7,
+           .window = 3.0,
+           .affine_k = 0.7,
+           .level_share = 0.5,
+           .score_smoothing = 8,
+           .model_noise = 1.0},
+          {.coarsening = 1,
+           .range = 0.25 * range,
+           .image_sigma = 0.4,
+           .window = 3.0,
+           .affine_k = 0.9,
+           .level_share = 0.7,
+           .score_smoothing = 5,
+           .model_noise = 0.7},
+          {.coarsening = 0,
+           .range = 0.15 * range,
+           .window = 2.5,
+           .score_smoothing = 2,
+           .model_noise = 0.5}};
+}
+
+/// Cartilages start on their segmented bone, so they have no far way to go.
+std::vector<Resolution> layer_resolutions() {
+  return {{.coarsening = 1,
+           .range = 2.5,
+           .image_sigma = 0.4,
+           .window = 2.0,
+           .affine_k = 0.7,
+           .level_share = 0.5,
+           .score_smoothing = 5,
+           .model_noise = 0.7},
+          {.coarsening = 0, .range = 1.5, .window = 1.5, .score_smoothing = 2, .model_noise = 0.5}};
+}
+
+std::vector<PreparedImage> smoothed_images(const std::vector<PreparedImage>& images, double sigma) {
+  std::vector<PreparedImage> out = images;
+  if (sigma <= 0.0) return out;
+  for (PreparedImage& image : out) image.volume = smoothed(image.volume, sigma);
+  return out;
+}
+
+void update_through(std::vector<Body>& bodies, const std::vector<Resolution>& resolutions,
+                    const std::vector<PreparedImage>& images,
+                    const std::vector<Obstacles>& obstacles, const std::vector<TriMesh>& hosts,
+                    const SegmentOptions& options, const Monitor& monitor) {
+  for (std::size_t r = 0; r < resolutions.size(); ++r) {
+    const auto smooth = smoothed_images(images, resolutions[r].image_sigma);
+    const double share = 1.0 / static_cast<double>(resolutions.size());
+    const double from = static_cast<double>(r) * share;
+    update_bodies(bodies, {smooth, obstacles, hosts}, resolutions[r], options,
+                  part_of(monitor, "segment", from, from + share));
+  }
+}
+
+/// The contrast whose profiles, after placing the bodies with them, fit this image best.
+std::string best_contrast(const std::vector<Body>& bodies, PreparedImage image,
+                          const Resolution& resolution, const SegmentOptions& options) {
+  if (options.contrast) return *options.contrast;
+  std::set<std::string> contrasts;
+  for (const shape::ProfileSet& set : bodies.front().model->profiles)
+    contrasts.insert(set.contrast);
+  require(!contrasts.empty(), "the atlas has no intensity profiles");
+  if (resolution.image_sigma > 0.0) image.volume = smoothed(image.volume, resolution.image_sigma);
+  std::string best;
+  double best_fit = -kInfinity;
+  SegmentOptions few = options;
+  few.iterations = std::min(options.iterations, 6);
+  for (const std::string& contrast : contrasts) {
+    image.contrast = contrast;
+    std::vector<Body> trial = bodies;
+    const std::vector<Obstacles> none(trial.size());
+    const std::vector<TriMesh> no_host(trial.size());
+    update_bodies(trial, {{&image, 1}, none, no_host}, resolution, few, {});
+    double fit = 0.0;
+    for (const Body& body : trial) fit += body.match.correlation.mean();
+    if (fit > best_fit) {
+      best_fit = fit;
+      best = contrast;
+    }
+  }
+  return best;
+}
+
+Body placed_body(const shape::StructureModel& model, Points placed) {
+  Body body;
+  body.model = &model;
+  body.fit = fit_model(model, placed, VecX::Ones(placed.rows()), 1.0);
+  body.points = body.fit.points;
+  return body;
+}
+
+/// Everything about one hip, as a right hip.
+class Hip {
+ public:
+  Hip(std::vector<PreparedImage> images, const shape::Atlas& atlas, const SegmentOptions& options)
+      : images_(std::move(images)), options_(options) {
+    for (const std::string& name : options.structures) {
+      models_.push_back(&shape::structure(atlas, name));
+    }
+    hosts_ = find_hosts(models_);
+    bodies_.resize(models_.size());
+  }
+
+  void segment_bones(const ThinPlateSpline& place, const Monitor& monitor) {
+    std::vector<std::size_t> numbers;
+    std::vector<Body> bones;
+    for (std::size_t s = 0; s < models_.size(); ++s) {
+      if (hosts_[s]) continue;
+      numbers.push_back(s);
+      bones.push_back(placed_body(*models_[s], place(models_[s]->hierarchy.levels.back().points)));
+    }
+    const auto resolutions = bone_resolutions(options_.search_range);
+    for (PreparedImage& image : images_) {
+      image.contrast = best_contrast(bones, image, resolutions.front(), options_);
+    }
+    update_through(bones, resolutions, images_, std::vector<Obstacles>(bones.size()),
+                   std::vector<TriMesh>(bones.size()), options_, monitor);
+    for (std::size_t b = 0; b < bones.size(); ++b) bodies_[numbers[b]] = std::move(bones[b]);
+  }
+
+  void segment_layers(const Monitor& monitor) {
+    std::vector<std::size_t> numbers;
+    std::vector<Body> layers;
+    std::vector<TriMesh> seats;
+    for (std::size_t s = 0; s < models_.size(); ++s) {
+      if (!hosts_[s]) continue;
+      const Body& host = bodies_[*hosts_[s]];
+      const TriMesh mean = dual_surface(host.model->hierarchy.levels.back());
+      TriMesh now = dual_surface(finest_mesh(host));
+      Body layer = placed_body(
+          *models_[s], carried_points(models_[s]->hierarchy.levels.back().points, mean, now));
+      layer.seat = seated_vertices(*models_[s], mean);
+      numbers.push_back(s);
+      layers.push_back(std::move(layer));
+      seats.push_back(std::move(now));
+    }
+    if (layers.empty()) return;
+    // no layer enters any bone
+    Obstacles bones;
+    for (std::size_t s = 0; s < models_.size(); ++s) {
+      if (!hosts_[s]) bones.push_back(dual_surface(finest_mesh(bodies_[s])));
+    }
+    update_through(layers, layer_resolutions(), images_,
+                   std::vector<Obstacles>(layers.size(), bones), seats, options_, monitor);
+    for (std::size_t b = 0; b < layers.size(); ++b) bodies_[numbers[b]] = std::move(layers[b]);
+  }
+
+  const std::vector<Body>& bodies() const { return bodies_; }
+  const std::vector<PreparedImage>& images() const { return images_; }
+  bool is_bone(std::size_t s) const { return !hosts_[s].has_value(); }
+
+ private:
+  std::vector<PreparedImage> images_;
+  const SegmentOptions& options_;
+  std::vector<const shape::StructureModel*> models_;
+  std::vector<std::optional<std::size_t>> hosts_;
+  std::vector<Body> bodies_;
+};
+
+SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& options) {
+  SegmentResult result;
+  result.quality = 1.0;
+  for (std::size_t s = 0; s < hip.bodies().size(); ++s) {
+    const Body& body = hip.bodies()[s];
+    const StructureQuality quality = quality_of(body);
+    result.structures[body.model->name] = quality;
+    if (hip.is_bone(s)) result.quality = std::min(result.quality, quality.confidence);
+    Surface surface = surface_of(body);
+    result.surfaces[body.model->name] = side == Side::left ? mirrored(surface) : surface;
+    if (quality.in_view < 0.5) {
+      result.warnings.push_back(join_text("only ", std::lround(100.0 * quality.in_view), " % of ",
+                                          body.model->name,
+                                          " is in view; the rest is the shape model's"));
+    }
+  }
+  for (const PreparedImage& image : hip.images()) result.contrasts.push_back(image.contrast);
+  if (result.quality < options.minimum_quality) {
+    fail(ErrorCode::below_quality, "the hip was not found: quality ", result.quality,
+         " is below the least allowed, ", options.minimum_quality,
+         "; check side, landmarks and that the hip is in the image");
+  }
+  return result;
+}
+
+}  // namespace
+
+SegmentResult segment(const std::vector<Volume>& volumes, const shape::Atlas& atlas, Side side,
+                      const shape::Landmarks& landmarks, const SegmentOptions& options,
+                      const Monitor& monitor) {
+  check(options);
+  require(!volumes.empty(), "there is no image to segment");
+  std::vector<PreparedImage> images;
+  for (const Volume& volume : volumes) {
+    images.push_back(
+        prepare_image(side == Side::left ? mirrored(volume) : volume, options.correct_bias));
+  }
+  shape::Landmarks ours = landmarks_of_side(landmarks, atlas, side);
+  if (side == Side::left) ours = mirrored(ours);
+  const ThinPlateSpline place = place_by_landmarks(ours, atlas, options.landmark_error);
+
+  Hip hip(std::move(images), atlas, options);
+  hip.segment_bones(place, part_of(monitor, "segment bones", 0.0, 0.7));
+  hip.segment_layers(part_of(monitor, "segment cartilages", 0.7, 1.0));
+  return make_result(hip, side, options);
+}
+
+}  // namespace coxa::segment
