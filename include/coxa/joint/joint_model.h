@@ -1,0 +1,48 @@
+#pragma once
+
+#include <coxa/core/types.h>
+#include <coxa/geom/clock_face.h>
+#include <coxa/geom/rigid_transform.h>
+#include <coxa/mesh/tet_mesh.h>
+#include <coxa/mesh/tri_mesh.h>
+
+namespace coxa::joint {
+
+/// Elastic law of the cartilage.
+enum class MaterialLaw { st_venant_kirchhoff, corotational };
+
+struct CartilageMaterial {
+  MaterialLaw law = MaterialLaw::corotational;
+  double youngs_modulus = 12.0;  ///< MPa, > 0
+  double poissons_ratio = 0.42;  ///< in (-1, 0.5)
+};
+
+/// One hip in its image pose: everything in image space (LPS mm).
+struct JointModel {
+  Side side = Side::right;
+  TetMesh acetabular_cartilage;  ///< boundary facets tagged bone_side, articular_side, rim
+  TetMesh femoral_cartilage;     ///< likewise
+  TriMesh hip_bone, femur;       ///< rigid, closed; both empty: the bony limit is not looked for
+  /// ISB frames of pelvis and femur in the image pose (x anterior, y superior, z right), both with
+  /// their origin at the joint centre.
+  RigidTransform X_IP, X_IF;
+  CartilageMaterial material;
+};
+
+/// @throws Error bad_input or bad_mesh naming what cannot be used: no tetrahedra, no articular or
+/// bone-side facet,
+///               a material value out of range, frames whose origins are apart
+void check_model(const JointModel& model);
+
+/// Facets of a mesh that carry `tag`.
+Triangles facets_with(const TetMesh& mesh, FacetTag tag);
+
+/// Unit vector out of the socket, image frame: minus the mean direction of the acetabular articular
+/// surface's push on the femur, that is the direction of its area-weighted mean normal.
+Vec3 socket_axis(const JointModel& model);
+
+/// Clock face of the socket about its axis and the joint centre; 12 superior, 3 anterior in the
+/// pelvis frame.
+ClockFace socket_clock(const JointModel& model);
+
+}  // namespace coxa::joint
