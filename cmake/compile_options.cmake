@@ -7,6 +7,8 @@ target_compile_definitions(coxa_options INTERFACE EIGEN_DONT_PARALLELIZE)
 # no -march: results must be the same bits on every x86-64; no contraction for the same reason
 target_compile_options(coxa_options INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
                        -Woverloaded-virtual -ffp-contract=off -fno-math-errno)
+# GCC 12 warns wrongly of overlapping copies in std::string's operator+ (GCC bug 105651)
+target_compile_options(coxa_options INTERFACE -Wno-restrict)
 if(COXA_WARNINGS_AS_ERRORS)
   target_compile_options(coxa_options INTERFACE -Werror)
 endif()
