@@ -1,0 +1,65 @@
+#pragma once
+
+#include <coxa/core/monitor.h>
+#include <coxa/core/types.h>
+#include <coxa/mesh/tet_mesh.h>
+#include <coxa/mesh/tri_mesh.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace coxa::meshing {
+
+/// How the tetrahedra are made.
+enum class Method {
+  automatic,  ///< medial where the body is a sheet, lattice otherwise
+  medial,     ///< medial grid, projected to both faces and extruded
+  lattice     ///< body-centred cubic lattice conformed to the surface
+};
+
+/// Straight elements, or ten-node elements whose boundary follows the surface.
+enum class ElementOrder { four_node, ten_node };
+
+struct MeshingOptions {
+  Method method = Method::automatic;
+  /// 1 to 8 layers through a sheet, exactly; one, freely improved, if not set
+  std::optional<int> layers = std::nullopt;
+  int max_tets = 20000;              ///< > 100; the cells are made larger until it holds
+  double cell_per_thickness = 1.33;  ///< edge length over layer thickness, > 0
+  double rim_rounding = 0.2;  ///< mm, in [0, 0.25]: how far a knife-edge rim may move inwards
+  ElementOrder order = ElementOrder::four_node;
+  int improvement_rounds = 8;  ///< >= 0: rounds of flips and smoothing
+};
+
+/// What was done and how good it is; the mesh itself is always valid.
+struct MeshingReport {
+  Method method = Method::automatic;  ///< the one used
+  double sheetness = 0.0;             ///< share of the surface that faces its other side, in [0, 1]
+  int layers = 0;                     ///< through the sheet; 0 for a lattice mesh
+  double rim_rounding = 0.0;          ///< mm: largest distance the rim was moved inwards
+  double aspect_mean = 0.0;           ///< 3 r_in / r_circ, 1 for the regular tetrahedron
+  double aspect_p05 = 0.0;            ///< its 5th percentile
+  double aspect_min = 0.0;
+  double dihedral_min = 0.0;       ///< rad
+  double dihedral_max = 0.0;       ///< rad
+  std::vector<std::string> notes;  ///< what the caller should know, in plain words
+};
+
+struct MeshingResult {
+  TetMesh
+      mesh;  ///< facets tagged; the two faces of a sheet as bone_side (first) and articular_side
+  MeshingReport report;
+};
+
+/// Fills a closed surface with tetrahedra.
+///
+/// @param surface  closed, manifold, oriented outward, not self-intersecting, mm
+/// @throws Error   bad_mesh if the surface cannot be filled, naming the place; bad_input for an
+/// option
+///                 out of range; below_quality if no valid mesh is found; cancelled
+/// @note           deterministic: bit-identical for any number of threads
+MeshingResult mesh_surface(const TriMesh& surface, const MeshingOptions& options = {},
+                           const Monitor& monitor = {});
+
+}  // namespace coxa::meshing

@@ -1,0 +1,266 @@
+#include <coxa/medial/medial_sheet.h>
+
+#include <coxa/medial/face_pair.h>
+#include "sheet_grid.h"
+
+#include <coxa/core/error.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace coxa::medial {
+namespace {
+
+constexpr double kSplit = 4.0 / 3.0;     // edges longer than this times the wanted length are split
+constexpr double kCollapse = 4.0 / 5.0;  // and shorter ones collapsed (Botsch and Kobbelt 2004)
+constexpr double kRelax = 0.8;           // share of the step to the weighted centre
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+void check(const MedialOptions& o) {
+  require(o.cell_per_thickness > 0, "cell_per_thickness must be > 0, got ", o.cell_per_thickness);
+  require(o.smallest_cell >= 0, "smallest_cell must be >= 0 mm, got ", o.smallest_cell);
+  require(o.largest_cell > 0 && o.largest_cell >= o.smallest_cell,
+          "largest_cell must be > 0 mm and not below smallest_cell, got ", o.largest_cell);
+  require(o.gradation > 0, "gradation must be > 0, got ", o.gradation);
+  require(o.max_cells >= 8, "max_cells must be >= 8, got ", o.max_cells);
+  require(o.iterations >= 1, "iterations must be >= 1, got ", o.iterations);
+}
+
+SheetGrid first_grid(const TriMesh& face) {
+  std::vector<Vec3> nodes;
+  for (Index v = 0; v < face.n_vertices(); ++v) nodes.emplace_back(face.points.row(v));
+  // turned over: cells are counter-clockwise seen from the second face
+  std::vector<SheetGrid::Cell> cells;
+  for (Index t = 0; t < face.n_triangles(); ++t) {
+    cells.push_back({face.triangles(t, 0), face.triangles(t, 2), face.triangles(t, 1)});
+  }
+  return SheetGrid(std::move(nodes), cells);
+}
+
+// radial forces: every node to the middle between the faces, border nodes to the rim
+void centre(SheetGrid& grid, const FacePair& faces) {
+  for (Index v = 0; v < grid.n_nodes(); ++v) {
+    if (grid.alive(v))
+      grid.x[at(v)] = grid.rim[at(v)] ? faces.on_rim(grid.x[at(v)]) : faces.centred(grid.x[at(v)]);
+  }
+}
+
+struct CellSizing {
+  double per_thickness, smallest, largest, gradation;
+};
+
+// wanted edge length from the local thickness, growing no faster than the gradation
+void update_sizes(SheetGrid& grid, const FacePair& faces, const CellSizing& sizing) {
+  for (Index v = 0; v < grid.n_nodes(); ++v) {
+    if (!grid.alive(v)) continue;
+    const BallFeet f = grid.rim[at(v)] ? faces.rim_feet(grid.x[at(v)]) : faces.feet(grid.x[at(v)]);
+    const double wanted = sizing.per_thickness * (f.first - f.second).norm();
+    grid.size[at(v)] = std::clamp(wanted, sizing.smallest, sizing.largest);
+  }
+  const auto edges = grid.edges();
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& [a, b] : edges) {
+      const double reach = sizing.gradation * (grid.x[at(a)] - grid.x[at(b)]).norm();
+      for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}}) {
+        if (grid.size[at(to)] > grid.size[at(from)] + reach + 1e-9) {
+          grid.size[at(to)] = grid.size[at(from)] + reach;
+          changed = true;
+        }
+      }
+    }
+  }
+}
+
+double expected_cells(const SheetGrid& grid) {
+  double sum = 0.0;
+  for (const auto& c : grid.cells()) {
+    const Vec3 &a = grid.x[at(c[0])], &b = grid.x[at(c[1])], &d = grid.x[at(c[2])];
+    const double area = 0.5 * (b - a).cross(d - a).norm();
+    const double edge = (grid.size[at(c[0])] + grid.size[at(c[1])] + grid.size[at(c[2])]) / 3.0;
+    sum += area / (std::sqrt(3.0) / 4.0 * edge * edge);
+  }
+  return sum;
+}
+
+// enlarges the smallest cell, then all cells, until the number of cells is met
+CellSizing sizing_for(SheetGrid& grid, const FacePair& faces, const MedialOptions& o) {
+  CellSizing sizing{o.cell_per_thickness, std::max(o.smallest_cell, 1e-3 * o.largest_cell),
+                    o.largest_cell, o.gradation};
+  update_sizes(grid, faces, sizing);
+  std::vector<double> thickness;
+  for (Index v = 0; v < grid.n_nodes(); ++v) {
+    if (!grid.alive(v) || grid.rim[at(v)]) continue;
+    const BallFeet f = faces.feet(grid.x[at(v)]);
+    thickness.push_back((f.first - f.second).norm());
+  }
+  std::sort(thickness.begin(), thickness.end());
+  const double typical =
+      thickness.empty() ? 1.0 : o.cell_per_thickness * thickness[thickness.size() / 2];
+  // first the floor up to the typical size, then everything in proportion
+  for (int step = 0; step < 200 && expected_cells(grid) > o.max_cells; ++step) {
+    if (sizing.smallest < typical) {
+      sizing.smallest = std::min(typical, std::max(1.04 * sizing.smallest, 0.25 * typical));
+    } else {
+      sizing.smallest *= 1.04;
+      sizing.per_thickness *= 1.04;
+      sizing.largest *= 1.04;
+    }
+    update_sizes(grid, faces, sizing);
+  }
+  return sizing;
+}
+
+double relative_length(const SheetGrid& grid, Index a, Index b) {
+  return (grid.x[at(a)] - grid.x[at(b)]).norm() / (0.5 * (grid.size[at(a)] + grid.size[at(b)]));
+}
+
+std::vector<std::pair<Index, Index>> edges_by_length(const SheetGrid& grid, bool longest_first) {
+  auto edges = grid.edges();
+  std::vector<std::pair<double, std::pair<Index, Index>>> keyed;
+  for (const auto& e : edges) {
+    const double length = relative_length(grid, e.first, e.second);
+    keyed.emplace_back(longest_first ? -length : length, e);
+  }
+  std::sort(keyed.begin(), keyed.end());
+  for (std::size_t i = 0; i < edges.size(); ++i) edges[i] = keyed[i].second;
+  return edges;
+}
+
+void split_long_edges(SheetGrid& grid, const FacePair& faces) {
+  for (const auto& [a, b] : edges_by_length(grid, true)) {
+    if (relative_length(grid, a, b) <= kSplit || !grid.has_edge(a, b)) continue;
+    const Vec3 middle = 0.5 * (grid.x[at(a)] + grid.x[at(b)]);
+    grid.split(a, b, grid.on_border(a, b) ? faces.on_rim(middle) : faces.centred(middle));
+  }
+}
+
+void collapse_short_edges(SheetGrid& grid, const FacePair& faces) {
+  for (auto [a, b] : edges_by_length(grid, false)) {
+    if (relative_length(grid, a, b) >= kCollapse || !grid.has_edge(a, b)) continue;
+    if (grid.rim[at(b)] && !grid.rim[at(a)]) std::swap(a, b);
+    const bool both = grid.rim[at(a)] == grid.rim[at(b)];
+    Vec3 place = both ? Vec3(0.5 * (grid.x[at(a)] + grid.x[at(b)])) : grid.x[at(a)];
+    if (both) place = grid.rim[at(a)] ? faces.on_rim(place) : faces.centred(place);
+    grid.collapse(a, b, place, kSplit);
+  }
+}
+
+double opposite_angle(const SheetGrid& grid, Index a, Index b, Index corner) {
+  const Vec3 u = grid.x[at(a)] - grid.x[at(corner)], v = grid.x[at(b)] - grid.x[at(corner)];
+  return std::atan2(u.cross(v).norm(), u.dot(v));
+}
+
+// flips towards six cells around a node (four on the border), or towards Delaunay
+void flip_edges(SheetGrid& grid, bool by_valence) {
+  const auto excess = [&](Index v, int change) {
+    const int ideal = grid.rim[at(v)] ? 3 : 6;
+    const int d = static_cast<int>(grid.around(v).size()) + change - ideal;
+    return d * d;
+  };
+  for (const auto& [a, b] : grid.edges()) {
+    if (!grid.has_edge(a, b)) continue;
+    const auto corners = grid.across(a, b);
+    if (!corners) continue;
+    const auto [c, d] = *corners;
+    const double angles = opposite_angle(grid, a, b, c) + opposite_angle(grid, a, b, d);
+    if (by_valence) {
+      const int before = excess(a, 0) + excess(b, 0) + excess(c, 0) + excess(d, 0);
+      const int after = excess(a, -1) + excess(b, -1) + excess(c, 1) + excess(d, 1);
+      if (after < before && angles > 0.6 * kPi) grid.flip(a, b);
+    } else if (angles > kPi + 1e-6) {
+      grid.flip(a, b);
+    }
+  }
+}
+
+// smoothing forces: to the weighted centre of the cells around, along the sheet only
+void smooth(SheetGrid& grid, const FacePair& faces) {
+  for (Index v = 0; v < grid.n_nodes(); ++v) {
+    if (!grid.alive(v)) continue;
+    Vec3 sum = Vec3::Zero();
+    double weights = 0.0;
+    if (grid.rim[at(v)]) {
+      for (const Index u : grid.neighbours(v)) {
+        if (!grid.on_border(u, v)) continue;
+        const double w = 1.0 / grid.size[at(u)];
+        sum += w * grid.x[at(u)];
+        weights += w;
+      }
+    } else {
+      for (const Index c : grid.around(v)) {
+        const auto& [i, j, k] = grid.cell(c);
+        const Vec3 &a = grid.x[at(i)], &b = grid.x[at(j)], &d = grid.x[at(k)];
+        const double edge = (grid.size[at(i)] + grid.size[at(j)] + grid.size[at(k)]) / 3.0;
+        const double w = (b - a).cross(d - a).norm() / (edge * edge);
+        sum += w * (a + b + d) / 3.0;
+        weights += w;
+      }
+    }
+    if (weights <= 0.0) continue;
+    Vec3 step = kRelax * (sum / weights - grid.x[at(v)]);
+    const Vec3 n = grid.normal(v);
+    step -= n * n.dot(step);
+    const Vec3 moved = grid.x[at(v)] + step;
+    grid.x[at(v)] = grid.rim[at(v)] ? faces.on_rim(moved) : faces.centred(moved);
+  }
+}
+
+MedialSheet to_sheet(SheetGrid& grid, const FacePair& faces) {
+  grid.compact();
+  MedialSheet sheet;
+  const Index n = grid.n_nodes();
+  sheet.nodes.resize(n, 3);
+  sheet.first_feet.resize(n, 3);
+  sheet.second_feet.resize(n, 3);
+  sheet.radii.resize(n);
+  sheet.rim = grid.rim;
+  for (Index v = 0; v < n; ++v) {
+    const BallFeet f = grid.rim[at(v)] ? faces.rim_feet(grid.x[at(v)]) : faces.feet(grid.x[at(v)]);
+    sheet.nodes.row(v) = grid.x[at(v)];
+    sheet.first_feet.row(v) = f.first;
+    sheet.second_feet.row(v) = f.second;
+    sheet.radii[v] = 0.5 * (f.first - f.second).norm();
+  }
+  const auto cells = grid.cells();
+  sheet.cells.resize(static_cast<Eigen::Index>(cells.size()), 3);
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      sheet.cells(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(k)) = cells[c][k];
+    }
+  }
+  return sheet;
+}
+
+}  // namespace
+
+MedialSheet fit_medial_sheet(const TriMesh& surface, const SurfaceSides& sides,
+                             const MedialOptions& options, const Monitor& monitor) {
+  check(options);
+  require(sides.labels.size() == at(surface.n_triangles()),
+          "sides must label every triangle: ", sides.labels.size(), " labels for ",
+          surface.n_triangles(), " triangles");
+  const FacePair faces(surface, sides);
+  SheetGrid grid = first_grid(faces.first_face());
+  centre(grid, faces);
+  const CellSizing sizing = sizing_for(grid, faces, options);
+  for (int k = 0; k < options.iterations; ++k) {
+    monitor.check_cancelled();
+    monitor.progress("medial grid", static_cast<double>(k) / options.iterations);
+    if (k > 0) update_sizes(grid, faces, sizing);
+    const bool shaping = k < options.iterations - 3;
+    if (shaping) {
+      split_long_edges(grid, faces);
+      collapse_short_edges(grid, faces);
+    }
+    flip_edges(grid, shaping);
+    for (int s = 0; s < 3; ++s) smooth(grid, faces);
+    flip_edges(grid, false);
+  }
+  return to_sheet(grid, faces);
+}
+
+}  // namespace coxa::medial

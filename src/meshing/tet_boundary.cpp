@@ -1,0 +1,92 @@
+#include "tet_boundary.h"
+
+#include <algorithm>
+#include <array>
+
+namespace coxa::meshing {
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+struct Facet {
+  std::array<Index, 3> sorted, outward;
+};
+
+// facets of one tetrahedron only, in ascending order of their sorted corners
+std::vector<Facet> single_facets(const std::vector<Tet>& tets) {
+  std::vector<Facet> all;
+  for (const Tet& t : tets) {
+    if (t[0] < 0) continue;
+    for (const std::array<Index, 3>& f :
+         {std::array<Index, 3>{t[1], t[2], t[3]}, std::array<Index, 3>{t[0], t[3], t[2]},
+          std::array<Index, 3>{t[0], t[1], t[3]}, std::array<Index, 3>{t[0], t[2], t[1]}}) {
+      std::array<Index, 3> sorted = f;
+      std::sort(sorted.begin(), sorted.end());
+      all.push_back({sorted, f});
+    }
+  }
+  std::sort(all.begin(), all.end(),
+            [](const Facet& a, const Facet& b) { return a.sorted < b.sorted; });
+  std::vector<Facet> single;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool with_next = i + 1 < all.size() && all[i].sorted == all[i + 1].sorted;
+    if (with_next) {
+      ++i;
+    } else {
+      single.push_back(all[i]);
+    }
+  }
+  return single;
+}
+
+FacetTag tag_of(const TetGrid& grid, const std::array<Index, 3>& facet) {
+  bool first = false, second = false, band = false;
+  for (const Index v : facet) {
+    const NodeKind kind = grid.kinds[at(v)];
+    first = first || kind == NodeKind::first_face || kind == NodeKind::first_border;
+    second = second || kind == NodeKind::second_face || kind == NodeKind::second_border;
+    band = band || kind == NodeKind::rim_band;
+  }
+  if (band || first == second) return FacetTag::rim;
+  return first ? FacetTag::bone_side : FacetTag::articular_side;
+}
+
+}  // namespace
+
+TetMesh to_tet_mesh(const TetGrid& grid) {
+  std::vector<Index> number(grid.x.size(), -1);
+  for (const Tet& t : grid.tets) {
+    if (t[0] < 0) continue;
+    for (const Index v : t) number[at(v)] = 0;
+  }
+  Index count = 0;
+  for (Index& n : number) {
+    if (n == 0) n = count++;
+  }
+  TetMesh mesh;
+  mesh.points.resize(count, 3);
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] >= 0) mesh.points.row(number[v]) = grid.x[v];
+  }
+  const auto living =
+      std::count_if(grid.tets.begin(), grid.tets.end(), [](const Tet& t) { return t[0] >= 0; });
+  mesh.tets.resize(living, 4);
+  Eigen::Index row = 0;
+  for (const Tet& t : grid.tets) {
+    if (t[0] < 0) continue;
+    for (int k = 0; k < 4; ++k) mesh.tets(row, k) = number[at(t[static_cast<std::size_t>(k)])];
+    ++row;
+  }
+  const std::vector<Facet> facets = single_facets(grid.tets);
+  mesh.facets.resize(static_cast<Eigen::Index>(facets.size()), 3);
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      mesh.facets(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) =
+          number[at(facets[f].outward[k])];
+    }
+    mesh.facet_tags.push_back(tag_of(grid, facets[f].outward));
+  }
+  return mesh;
+}
+
+}  // namespace coxa::meshing

@@ -1,0 +1,39 @@
+#include "tet_grid.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace coxa::meshing {
+
+double volume6(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return (b - a).cross(c - a).dot(d - a);
+}
+
+Index TetGrid::add(const Tet& tet) {
+  const Index number = static_cast<Index>(tets.size());
+  tets.push_back(tet);
+  for (const Index v : tet) around[static_cast<std::size_t>(v)].push_back(number);
+  return number;
+}
+
+void TetGrid::remove(Index t) {
+  Tet& tet = tets[static_cast<std::size_t>(t)];
+  for (const Index v : tet) {
+    auto& list = around[static_cast<std::size_t>(v)];
+    list.erase(std::find(list.begin(), list.end(), t));
+  }
+  tet[0] = -1;
+}
+
+void TetGrid::link() {
+  tets.erase(std::remove_if(tets.begin(), tets.end(), [](const Tet& t) { return t[0] < 0; }),
+             tets.end());
+  around.assign(x.size(), {});
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    for (const Index v : tets[t])
+      around[static_cast<std::size_t>(v)].push_back(static_cast<Index>(t));
+  }
+}
+
+}  // namespace coxa::meshing
