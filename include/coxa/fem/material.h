@@ -1,0 +1,57 @@
+#pragma once
+
+#include <coxa/core/types.h>
+
+#include <memory>
+
+namespace coxa::fem {
+
+using Mat9 = Eigen::Matrix<double, 9, 9>;
+
+/// Lamé's parameters, MPa.
+struct Lame {
+  double lambda = 0.0;
+  double mu = 0.0;
+};
+
+/// Lamé's parameters of Young's modulus E, MPa, > 0, and Poisson's ratio nu in (-1, 0.5).
+/// @throws Error bad_input if one is out of range
+Lame lame_from(double E, double nu);
+
+enum class Tangent {
+  exact,    ///< the derivative, which may be indefinite
+  positive  ///< a positive semidefinite stand-in, equal to the derivative where that is positive
+};
+
+/// A hyperelastic law: energy density as a function of the deformation gradient.
+class Material {
+ public:
+  virtual ~Material() = default;
+  /// N·mm/mm³, 0 at rest; infinite where the law forbids F.
+  virtual double energy_density(const Mat3& F) const = 0;
+  /// P = dW/dF, MPa.
+  virtual Mat3 first_piola(const Mat3& F) const = 0;
+  /// dP/dF, 9×9 over the columns of F one after the other: entry (a + 3k, b + 3l) is dP_ak / dF_bl.
+  virtual Mat9 tangent(const Mat3& F, Tangent kind) const = 0;
+};
+
+/// sigma = F S F^T / J for a first Piola-Kirchhoff stress P at F; NaN where J = 0.
+Mat3 cauchy_from(const Mat3& P, const Mat3& F);
+
+/// S = lambda tr(E) + 2 mu E, the unrotated mode: exact for large rotations, collapses below
+/// stretch 0.577.
+std::unique_ptr<Material> make_st_venant_kirchhoff(const Lame& lame);
+/// W = mu |S - I|^2 + lambda/2 tr(S - I)^2 with F = R S, the rotated mode: resists compression and
+/// inversion.
+std::unique_ptr<Material> make_corotational(const Lame& lame);
+/// W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2; infinite for J <= 0.
+std::unique_ptr<Material> make_neo_hookean(const Lame& lame);
+/// Neo-Hookean law that stays finite under inversion. Source: Smith et al. 2018, eq. 14, its
+/// parameters reset so that small strains follow `lame`.
+std::unique_ptr<Material> make_stable_neo_hookean(const Lame& lame);
+/// W = c1 (exp(c2 (I1 - 3)) - 1) - c1 c2/2 (I2 - 3) + bulk/2 (ln J)^2 on isochoric invariants;
+/// shear modulus c1 c2.
+/// @param c1 MPa   @param c2 no unit   @param bulk MPa, all > 0
+std::unique_ptr<Material> make_veronda_westmann(double c1, double c2, double bulk);
+
+}  // namespace coxa::fem
