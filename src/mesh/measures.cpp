@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+
 namespace coxa {
 namespace {
 
@@ -63,6 +65,16 @@ double mean_edge_length(const TriMesh& mesh) {
     sum += (x.b - x.a).norm() + (x.c - x.b).norm() + (x.a - x.c).norm();
   }
   return sum / (3.0 * mesh.n_triangles());
+}
+
+double percentile(VecX values, double share) {
+  require(0.0 <= share && share <= 1.0, "percentile: share must be in [0, 1], got ", share);
+  if (values.size() == 0) return kNaN;
+  std::sort(values.data(), values.data() + values.size());
+  const double place = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<Eigen::Index>(place);
+  const auto above = std::min(below + 1, values.size() - 1);
+  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
 Bounds bounds(const Points& points) {

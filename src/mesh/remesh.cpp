@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace coxa {
 namespace {
@@ -47,19 +48,20 @@ class Remesher {
   }
 
   void split_long_edges() {
-    for (bool any = true; any;) {
-      any = false;
-      auto edges = mesh_.edges();
+    struct LongEdge {
+      double length;
+      Index a, b;
+    };
+    std::vector<LongEdge> edges;
+    do {
+      edges.clear();
+      for (const auto& [a, b] : mesh_.edges())
+        if (length(a, b) > long_) edges.push_back({length(a, b), a, b});
       // longest first: halves of long edges then meet their neighbours' halves
-      std::stable_sort(edges.begin(), edges.end(), [&](const auto& e, const auto& f) {
-        return length(e[0], e[1]) > length(f[0], f[1]);
-      });
-      for (const auto& [a, b] : edges) {
-        if (length(a, b) <= long_) break;
-        split(a, b);
-        any = true;
-      }
-    }
+      std::stable_sort(edges.begin(), edges.end(),
+                       [](const LongEdge& e, const LongEdge& f) { return e.length > f.length; });
+      for (const LongEdge& edge : edges) split(edge.a, edge.b);
+    } while (!edges.empty());
   }
 
   void split(Index a, Index b) {

@@ -65,7 +65,7 @@ TEST(Decimate, EvennessEvensTheTriangles) {
   TriMesh pill = test::icosphere(4, 5.0);
   pill.points.col(2) =
       pill.points.col(2).unaryExpr([](double z) { return z + (z > 0 ? 20.0 : -20.0); });
-  pill = remesh(pill, {.target_edge = 0.8});
+  pill = remesh(pill, {.target_edge = 1.2, .iterations = 4});
   const double edge = edge_length_for(pill, 600);
   const double shape = share_of_edges(decimate(pill, {.n_triangles = 600}), 0.6 * edge, 1.5 * edge);
   const double even =

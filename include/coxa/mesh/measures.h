@@ -15,6 +15,10 @@ Vec3 volume_centroid(const TriMesh& mesh);
 /// Length of every edge averaged over all triangle sides, mm.
 double mean_edge_length(const TriMesh& mesh);
 
+/// Value below which the given share (0 to 1) of the values lies, linear between neighbours; NaN
+/// for none.
+double percentile(VecX values, double share);
+
 /// Axis-aligned bounds of the points, mm.
 struct Bounds {
   Vec3 low = Vec3::Constant(kInfinity);
