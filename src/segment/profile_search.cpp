@@ -196,7 +196,8 @@ ProfileMatch best_match(const ProfileScores& scores, const VecX& reliability) {
   const Index V = static_cast<Index>(scores.score.rows());
   const Index columns = static_cast<Index>(scores.score.cols());
   const Index apart = std::max<Index>(2, static_cast<Index>(std::lround(1.5 / scores.step)));
-  ProfileMatch match{VecX::Zero(V), VecX::Zero(V), VecX::Zero(V), VecX::Zero(V)};
+  const VecX none = VecX::Zero(V);
+  ProfileMatch match{none, none, none, none, none};
   parallel_for(V, [&](Index v) {
     const auto row = scores.score.row(v);
     match.seen[v] = std::isnan(row[scores.n_each_way]) ? 0.0 : 1.0;
@@ -218,6 +219,7 @@ ProfileMatch best_match(const ProfileScores& scores, const VecX& reliability) {
     }
     match.shift[v] = (best - scores.n_each_way + offset) * scores.step;
     match.correlation[v] = scores.correlation(v, best);
+    match.here[v] = scores.correlation(v, scores.n_each_way);
     match.confidence[v] = std::clamp(match.correlation[v], 0.0, 1.0) * reliability[v] *
                           (0.3 + 0.7 * distinct) * (at_end && columns > 1 ? 0.3 : 1.0);
   });

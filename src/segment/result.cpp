@@ -18,7 +18,7 @@ StructureQuality quality_of(const Body& body) {
   double weight = 0.0;
   for (Index v = 0; v < body.match.seen.size(); ++v) {
     quality.in_view += body.match.seen[v];
-    quality.correlation += body.match.seen[v] * body.match.correlation[v];
+    quality.correlation += body.match.seen[v] * body.match.here[v];
     quality.residual += body.match.seen[v] * std::abs(body.match.shift[v]);
     weight += body.match.seen[v];
   }

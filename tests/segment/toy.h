@@ -139,7 +139,7 @@ struct Scan {
   double low = -42.0, high = 42.0;  ///< mm along z
   double noise = 0.0;
   double (*value)(double) = t1_value;
-  RigidTransform grid;  ///< pose of the grid's axes
+  RigidTransform grid = {};  ///< pose of the grid's axes
 };
 
 /// Image of a closed surface, by its signed distance.

@@ -54,6 +54,7 @@ void update_smoothed(ProfileScores& scores, const Triangles& neighbours, const V
 struct ProfileMatch {
   VecX shift;        ///< mm along the normal, sub-sample by a parabola; 0 where unseen
   VecX correlation;  ///< at the shift; 0 where unseen
+  VecX here;         ///< correlation at the present place; 0 where unseen
   VecX confidence;   ///< in [0, 1]: correlation, how distinct the best is, and the reference's
                      ///< reliability
   VecX seen;         ///< 1 where the image shows the profile at its present place, else 0

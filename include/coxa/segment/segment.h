@@ -28,7 +28,7 @@ struct SegmentOptions {
   double landmark_error = 3.0;  ///< mm, expected standard error of a landmark, >= 0
   double search_range =
       12.0;  ///< mm, how far from its start a border is looked for at the coarsest level, > 0
-  ForceWeights weights;
+  ForceWeights weights = {};
   double gradient_weight =
       0.3;                    ///< of the border's gradient beside the profile's correlation, >= 0
   double minimum_gap = 0.02;  ///< mm, kept between structures, >= 0
@@ -36,8 +36,8 @@ struct SegmentOptions {
   double tolerance =
       0.02;  ///< mm, mean move of an iteration below which a resolution is finished, >= 0
   bool correct_bias = true;  ///< take a slow field of brightness out of each image first
-  std::optional<std::string>
-      contrast;                   ///< the atlas' profiles to use; none: the best fitting of them
+  std::optional<std::string> contrast =
+      {};                         ///< the atlas' profiles to use; none: the best fitting of them
   double minimum_quality = 0.25;  ///< in [0, 1]: below it the result is refused with below_quality
 };
 
