@@ -11,11 +11,11 @@ namespace coxa::shape {
 
 /// Intensities along the outward normal of every finest-level vertex, for one MRI contrast.
 struct ProfileSet {
-  std::string contrast;   ///< "t1", "dess", …
-  double step = 0.5;      ///< mm between samples
-  Index n_inside = 0;     ///< samples inside; sample n_inside is at the surface
-  MatX mean;              ///< V×samples, each row with mean 0 and norm 1 where informative
-  VecX reliability;       ///< V in [0, 1]: agreement of the training profiles
+  std::string contrast;  ///< "t1", "dess", …
+  double step = 0.5;     ///< mm between samples
+  Index n_inside = 0;    ///< samples inside; sample n_inside is at the surface
+  MatX mean;             ///< V×samples, each row with mean 0 and norm 1 where informative
+  VecX reliability;      ///< V in [0, 1]: agreement of the training profiles
 };
 
 /// Point-distribution model over the finest level's vertices of all structures that move together.
@@ -27,12 +27,12 @@ struct ShapeModes {
 /// Generic model of one structure. All hips are stored as right hips in the atlas frame
 /// (origin at the mean femoral head centre, LPS axes, mm); left hips are mirrored in x.
 struct StructureModel {
-  std::string name;              ///< femur, hip_bone, femoral_cartilage, acetabular_cartilage, …
-  SimplexHierarchy hierarchy;    ///< mean shape, at least three resolutions, coarse first
-  ShapeModes shape;              ///< of the finest level, after similarity alignment of the hip
+  std::string name;            ///< femur, hip_bone, femoral_cartilage, acetabular_cartilage, …
+  SimplexHierarchy hierarchy;  ///< mean shape, at least three resolutions, coarse first
+  ShapeModes shape;            ///< of the finest level, after similarity alignment of the hip
   std::vector<ProfileSet> profiles;
   std::vector<SimplexParameters> reference;  ///< shape memory of the finest level
-  bool generic = false;          ///< built from anatomy, not from examples
+  bool generic = false;                      ///< built from anatomy, not from examples
 };
 
 /// Mean landmark positions in the atlas frame, by name without side suffix.
@@ -41,8 +41,9 @@ using Landmarks = std::map<std::string, Vec3>;
 struct Atlas {
   std::vector<StructureModel> structures;
   Landmarks landmarks;
-  std::vector<std::string> subjects;     ///< examples it was computed from, for example "libhip/m2/left"
-  std::string attribution;               ///< licences and sources of those examples
+  std::vector<std::string>
+      subjects;             ///< examples it was computed from, for example "libhip/m2/left"
+  std::string attribution;  ///< licences and sources of those examples
 };
 
 /// The structure's model. @throws Error bad_input naming what the atlas has, when it is absent

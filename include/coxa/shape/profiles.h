@@ -1,0 +1,33 @@
+#pragma once
+
+#include <coxa/image/volume.h>
+#include <coxa/shape/atlas.h>
+
+#include <string>
+#include <vector>
+
+namespace coxa::shape {
+
+struct ProfileOptions {
+  double step = 0.5;     ///< mm between samples, > 0
+  Index n_inside = 10;   ///< samples inside, >= 1
+  Index n_outside = 10;  ///< samples outside, >= 1
+};
+
+/// One image in which a structure's vertices are known.
+struct ProfileExample {
+  const Volume* image = nullptr;  ///< must outlive the call
+  Points points;                  ///< V×3, mm, image frame
+  Points normals;                 ///< V×3, unit, outward
+};
+
+/// Mean profile of every vertex over the examples that show it, and how far they agree.
+///
+/// Each profile is taken to mean 0 and norm 1 before averaging, so that gain and offset of an image
+/// do not matter; the mean is normalised again. Reliability is the length of the mean before that:
+/// 1 where all examples agree, 0 where none shows the vertex or they contradict each other.
+/// @throws Error bad_input if the examples differ in their number of vertices
+ProfileSet learn_profiles(const std::vector<ProfileExample>& examples, const std::string& contrast,
+                          const ProfileOptions& options = {});
+
+}  // namespace coxa::shape
