@@ -3,69 +3,85 @@
 #include <coxa/core/error.h>
 
 #include <algorithm>
+#include <span>
 
 namespace coxa::collide {
 
-double SurfaceContact::gap(const ContactPair& pair, const VecX& x) const {
-  Vec3 sum = Vec3::Zero();
-  for (Index k = pair.first; k < pair.last; ++k) {
-    sum += stencil_weights_[static_cast<std::size_t>(k)] *
-           x.segment<3>(3 * stencil_particles_[static_cast<std::size_t>(k)]);
+double SurfaceContact::gap(const ContactConstraint& constraint, const VecX& x) const {
+  double sum = 0.0;
+  for (Index k = constraint.first; k < constraint.last; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    sum += stencil_vectors_[at].dot(x.segment<3>(3 * stencil_particles_[at]));
   }
-  return pair.normal.dot(sum) - pair.offset;
+  return sum - constraint.offset;
 }
 
-double SurfaceContact::pressure(const ContactPair& pair, const VecX& x) const {
-  const double multiplier = multiplier_[static_cast<std::size_t>(pair.sample)];
-  return std::max(0.0, multiplier - options_.stiffness * gap(pair, x));
+double SurfaceContact::pressure(const ContactConstraint& constraint, const VecX& x) const {
+  const double multiplier = multiplier_[static_cast<std::size_t>(constraint.owner)];
+  return std::max(0.0, multiplier - options_.stiffness * gap(constraint, x));
 }
 
 double SurfaceContact::energy(const VecX& x) const {
   double sum = 0.0;
-  for (const ContactPair& pair : pairs_) {
-    const double p = pressure(pair, x),
-                 multiplier = multiplier_[static_cast<std::size_t>(pair.sample)];
-    sum += 0.5 * pair.area / options_.stiffness * (p * p - multiplier * multiplier);
+  for (const ContactConstraint& constraint : constraints_) {
+    const double p = pressure(constraint, x),
+                 multiplier = multiplier_[static_cast<std::size_t>(constraint.owner)];
+    sum += 0.5 * constraint.area / options_.stiffness * (p * p - multiplier * multiplier);
   }
   return sum;
 }
 
 void SurfaceContact::add_force(const VecX& x, const VecX& /*v*/, VecX& force) const {
-  for (const ContactPair& pair : pairs_) {
-    const double p = pressure(pair, x);
+  for (const ContactConstraint& constraint : constraints_) {
+    const double p = pressure(constraint, x);
     if (p == 0.0) continue;
-    const Vec3 push = p * pair.area * pair.normal;
-    for (Index k = pair.first; k < pair.last; ++k) {
+    const double push = p * constraint.area;
+    for (Index k = constraint.first; k < constraint.last; ++k) {
       force.segment<3>(3 * stencil_particles_[static_cast<std::size_t>(k)]) +=
-          stencil_weights_[static_cast<std::size_t>(k)] * push;
+          push * stencil_vectors_[static_cast<std::size_t>(k)];
     }
   }
 }
 
+/// Particles that a constraint against a rigid obstacle can join, whatever the pairs are.
+std::vector<std::vector<Index>> SurfaceContact::slave_groups() const {
+  const bool pointwise = options_.rule == ContactRule::pointwise;
+  std::vector<std::vector<Index>> groups(
+      static_cast<std::size_t>(pointwise ? slave_.n_triangles() : slave_.n_vertices()));
+  for (Index t = 0; t < slave_.n_triangles(); ++t) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const auto v = static_cast<std::size_t>(slave_.triangles(t, corner));
+      const auto first = slave_.particle.begin() + slave_.row_start[v];
+      const auto last = slave_.particle.begin() + slave_.row_start[v + 1];
+      for (int k = 0; k < 3; ++k) {
+        const Index group = pointwise ? t : slave_.triangles(t, k);
+        auto& members = groups[static_cast<std::size_t>(group)];
+        members.insert(members.end(), first, last);
+        if (pointwise) break;
+      }
+    }
+  }
+  for (std::vector<Index>& members : groups) {
+    std::sort(members.begin(), members.end());
+    members.erase(std::unique(members.begin(), members.end()), members.end());
+  }
+  return groups;
+}
+
 std::vector<std::pair<Index, Index>> SurfaceContact::pattern() const {
   std::vector<std::pair<Index, Index>> blocks;
-  if (!other_) {
-    // the obstacle is rigid: only particles of one slave triangle meet, whatever the pairs are
-    for (Index t = 0; t < slave_.n_triangles(); ++t) {
-      std::vector<Index> members;
-      for (int k = 0; k < 3; ++k) {
-        const auto v = static_cast<std::size_t>(slave_.triangles(t, k));
-        members.insert(members.end(), slave_.particle.begin() + slave_.row_start[v],
-                       slave_.particle.begin() + slave_.row_start[v + 1]);
-      }
-      for (const Index i : members) {
-        for (const Index j : members) blocks.emplace_back(i, j);
-      }
+  const auto append_all_pairs = [&](std::span<const Index> members) {
+    for (const Index i : members) {
+      for (const Index j : members) blocks.emplace_back(i, j);
+    }
+  };
+  if (other_) {
+    for (const ContactConstraint& constraint : constraints_) {
+      append_all_pairs({stencil_particles_.data() + constraint.first,
+                        stencil_particles_.data() + constraint.last});
     }
   } else {
-    for (const ContactPair& pair : pairs_) {
-      for (Index i = pair.first; i < pair.last; ++i) {
-        for (Index j = pair.first; j < pair.last; ++j) {
-          blocks.emplace_back(stencil_particles_[static_cast<std::size_t>(i)],
-                              stencil_particles_[static_cast<std::size_t>(j)]);
-        }
-      }
-    }
+    for (const std::vector<Index>& members : slave_groups()) append_all_pairs(members);
   }
   std::sort(blocks.begin(), blocks.end());
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
@@ -74,15 +90,14 @@ std::vector<std::pair<Index, Index>> SurfaceContact::pattern() const {
 
 void SurfaceContact::add_jacobian(const VecX& x, const VecX& /*v*/, double stiffness_factor,
                                   double /*damping_factor*/, solve::BlockMatrix& A) const {
-  for (const ContactPair& pair : pairs_) {
-    if (pressure(pair, x) == 0.0) continue;
-    const Mat3 block =
-        stiffness_factor * options_.stiffness * pair.area * pair.normal * pair.normal.transpose();
-    for (Index i = pair.first; i < pair.last; ++i) {
-      for (Index j = pair.first; j < pair.last; ++j) {
+  for (const ContactConstraint& constraint : constraints_) {
+    if (pressure(constraint, x) == 0.0) continue;
+    const double stiffness = stiffness_factor * options_.stiffness * constraint.area;
+    for (Index i = constraint.first; i < constraint.last; ++i) {
+      for (Index j = constraint.first; j < constraint.last; ++j) {
         const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
         A.at(stencil_particles_[a], stencil_particles_[b]) +=
-            stencil_weights_[a] * stencil_weights_[b] * block;
+            stiffness * stencil_vectors_[a] * stencil_vectors_[b].transpose();
       }
     }
   }
@@ -90,9 +105,9 @@ void SurfaceContact::add_jacobian(const VecX& x, const VecX& /*v*/, double stiff
 
 double SurfaceContact::update_multipliers(const VecX& x) {
   double penetration = 0.0;
-  for (const ContactPair& pair : pairs_) {
-    penetration = std::max(penetration, -gap(pair, x));
-    multiplier_[static_cast<std::size_t>(pair.sample)] = pressure(pair, x);
+  for (const ContactConstraint& constraint : constraints_) {
+    penetration = std::max(penetration, -gap(constraint, x));
+    multiplier_[static_cast<std::size_t>(constraint.owner)] = pressure(constraint, x);
   }
   return penetration;
 }
@@ -107,17 +122,28 @@ void SurfaceContact::update_stiffness(double stiffness) {
 std::vector<ContactSample> SurfaceContact::samples(const VecX& x) const {
   std::vector<ContactSample> states = samples_;
   const Points points = surface_points(slave_, x);
+  const Points other_points = other_ ? surface_points(*other_, x) : other_mesh_.points;
   for (ContactSample& state : states) {
     for (int k = 0; k < 3; ++k) {
       state.point +=
           state.barycentric[k] * points.row(slave_.triangles(state.triangle, k)).transpose();
     }
   }
+  VecX of_owner = VecX::Zero(static_cast<Eigen::Index>(multiplier_.size()));
+  for (const ContactConstraint& constraint : constraints_) {
+    of_owner[constraint.owner] = pressure(constraint, x);
+  }
   for (const ContactPair& pair : pairs_) {
     ContactSample& state = states[static_cast<std::size_t>(pair.sample)];
     state.normal = pair.normal;
-    state.gap = gap(pair, x);
-    state.pressure = pressure(pair, x);
+    state.gap = pair.normal.dot(state.point - other_point(pair, other_points)) - pair.offset;
+    if (options_.rule == ContactRule::pointwise) {
+      state.pressure = of_owner[pair.sample];
+      continue;
+    }
+    for (int k = 0; k < 3; ++k) {
+      state.pressure += state.barycentric[k] * of_owner[slave_.triangles(state.triangle, k)];
+    }
   }
   return states;
 }

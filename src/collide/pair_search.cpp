@@ -1,5 +1,7 @@
 #include "pair_search.h"
 
+#include <coxa/mesh/vertex_normals.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -109,6 +111,28 @@ std::optional<FacedPoint> find_faced_point(const OtherSurface& other, const Vec3
   }
   if (options.facing > -1.0 && -normal.dot(faced.normal) < options.facing) return std::nullopt;
   return faced;
+}
+
+Points edge_bulges(const TriMesh& mesh) {
+  const Points normals = vertex_normals(mesh);
+  Points bulges(mesh.n_triangles(), 3);
+  for (Index t = 0; t < mesh.n_triangles(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const Index a = mesh.triangles(t, k), b = mesh.triangles(t, (k + 1) % 3);
+      const Vec3 edge = (mesh.points.row(b) - mesh.points.row(a)).transpose();
+      bulges(t, k) = 0.5 * (edge.dot(normals.row(b)) - edge.dot(normals.row(a)));
+    }
+  }
+  return bulges;
+}
+
+double bulge(const Points& bulges, Index triangle, const Vec3& barycentric) {
+  if (bulges.rows() == 0) return 0.0;
+  double height = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    height += bulges(triangle, k) * barycentric[k] * barycentric[(k + 1) % 3];
+  }
+  return height;
 }
 
 }  // namespace coxa::collide

@@ -26,4 +26,16 @@ struct FacedPoint {
 std::optional<FacedPoint> find_faced_point(const OtherSurface& other, const Vec3& point,
                                            const Vec3& normal, const ContactOptions& options);
 
+/// How far the smooth surface stands out from each edge of each triangle: the patch over a triangle
+/// is higher than the facet by the sum of bulge times both corners' weights, over its edges (edge k
+/// joins corners k and k+1).
+///
+/// Half the sum of the distances of each end from the other's tangent plane: exact to leading order
+/// on spheres.
+/// @returns T×3, mm
+Points edge_bulges(const TriMesh& mesh);
+
+/// Height of the patch at barycentric weights, mm; 0 where `bulges` is empty.
+double bulge(const Points& bulges, Index triangle, const Vec3& barycentric);
+
 }  // namespace coxa::collide

@@ -49,11 +49,6 @@ void check(const ContactOptions& options) {
 
 }  // namespace
 
-struct SurfaceContact::Candidate {
-  bool paired = false;
-  FacedPoint faced;
-};
-
 SurfaceContact::SurfaceContact(ParticleSurface slave, ParticleSurface other,
                                const ContactOptions& options)
     : options_(options), slave_(std::move(slave)), other_(std::move(other)) {
@@ -90,7 +85,9 @@ void SurfaceContact::make_samples() {
       }
     }
   }
-  multiplier_.assign(samples_.size(), 0.0);
+  const bool pointwise = options_.rule == ContactRule::pointwise;
+  multiplier_.assign(pointwise ? samples_.size() : static_cast<std::size_t>(slave_.n_vertices()),
+                     0.0);
   boundary_edge_ = boundary_edges(other_mesh_.triangles);
   boundary_vertex_.assign(static_cast<std::size_t>(other_mesh_.n_vertices()), false);
   for (Index t = 0; t < other_mesh_.n_triangles(); ++t) {
@@ -139,6 +136,12 @@ void SurfaceContact::update_areas(const VecX& areas) {
   }
 }
 
+void SurfaceContact::update_curvature(const VecX& x) {
+  prepare_other(x);
+  slave_bulge_ = edge_bulges({surface_points(slave_, x), slave_.triangles});
+  other_bulge_ = edge_bulges(other_mesh_);
+}
+
 void SurfaceContact::update_pairs(const VecX& x) {
   prepare_other(x);
   const TriMesh slave{surface_points(slave_, x), slave_.triangles};
@@ -148,7 +151,7 @@ void SurfaceContact::update_pairs(const VecX& x) {
   update_areas(triangle_areas(slave));
 
   const bool at_vertices = options_.quadrature == ContactQuadrature::vertices;
-  std::vector<Candidate> candidates(samples_.size());
+  std::vector<std::optional<ContactPair>> found(samples_.size());
   parallel_for(n_samples(), [&](Index s) {
     const ContactSample& sample = samples_[static_cast<std::size_t>(s)];
     Vec3 point = Vec3::Zero(), vertex_normal = Vec3::Zero();
@@ -158,57 +161,28 @@ void SurfaceContact::update_pairs(const VecX& x) {
       vertex_normal += sample.barycentric[k] * normals.row(v).transpose();
     }
     const Vec3 normal =
-        at_vertices ? vertex_normal : facet_normals.row(sample.triangle).transpose();
-    const auto faced = find_faced_point(other, point, normal.normalized(), options_);
-    if (faced) candidates[static_cast<std::size_t>(s)] = {true, *faced};
+        (at_vertices ? vertex_normal : facet_normals.row(sample.triangle).transpose()).normalized();
+    const auto faced = find_faced_point(other, point, normal, options_);
+    if (!faced) return;
+    const double bulges =
+        bulge(slave_bulge_, sample.triangle, sample.barycentric) * -normal.dot(faced->normal) +
+        bulge(other_bulge_, faced->triangle, faced->barycentric);
+    found[static_cast<std::size_t>(s)] = {s, faced->triangle, faced->barycentric, faced->normal,
+                                          options_.minimum_gap + bulges};
   });
 
   pairs_.clear();
+  for (const auto& pair : found) {
+    if (pair) pairs_.push_back(*pair);
+  }
+  constraints_.clear();
   stencil_particles_.clear();
-  stencil_weights_.clear();
-  for (Index s = 0; s < n_samples(); ++s) {
-    const Candidate& candidate = candidates[static_cast<std::size_t>(s)];
-    if (candidate.paired) {
-      append_pair(s, candidate, samples_[static_cast<std::size_t>(s)].area);
-    } else {
-      multiplier_[static_cast<std::size_t>(s)] = 0.0;
-    }
+  stencil_vectors_.clear();
+  if (options_.rule == ContactRule::pointwise) {
+    make_pointwise_constraints();
+  } else {
+    make_nodal_constraints();
   }
-}
-
-void SurfaceContact::append_pair(Index sample, const Candidate& candidate, double area) {
-  ContactPair pair{.sample = sample,
-                   .other_triangle = candidate.faced.triangle,
-                   .normal = candidate.faced.normal,
-                   .offset = options_.minimum_gap,
-                   .area = area,
-                   .first = static_cast<Index>(stencil_particles_.size())};
-  const auto append = [&](const ParticleSurface& surface, Index vertex, double weight) {
-    const auto first =
-        static_cast<std::size_t>(surface.row_start[static_cast<std::size_t>(vertex)]);
-    const auto last =
-        static_cast<std::size_t>(surface.row_start[static_cast<std::size_t>(vertex) + 1]);
-    for (std::size_t k = first; k < last; ++k) {
-      stencil_particles_.push_back(surface.particle[k]);
-      stencil_weights_.push_back(weight * surface.weight[k]);
-    }
-  };
-  const ContactSample& of = samples_[static_cast<std::size_t>(sample)];
-  for (int k = 0; k < 3; ++k) {
-    if (of.barycentric[k] != 0.0)
-      append(slave_, slave_.triangles(of.triangle, k), of.barycentric[k]);
-  }
-  for (int k = 0; k < 3; ++k) {
-    const Index vertex = other_mesh_.triangles(pair.other_triangle, k);
-    const double weight = candidate.faced.barycentric[k];
-    if (other_) {
-      append(*other_, vertex, -weight);
-    } else {
-      pair.offset += weight * pair.normal.dot(other_mesh_.points.row(vertex).transpose());
-    }
-  }
-  pair.last = static_cast<Index>(stencil_particles_.size());
-  pairs_.push_back(pair);
 }
 
 }  // namespace coxa::collide

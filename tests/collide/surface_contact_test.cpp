@@ -5,19 +5,24 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "collide/shapes.h"
 
 namespace coxa::collide {
 
 const TriMesh ball = test::icosphere(2, 10.0, Vec3(0, 0, 0));
-const TriMesh other_ball = test::icosphere(3, 10.0, Vec3(0.3, 0.4, 19.7));
+const TriMesh other_ball = test::icosphere(3, 10.0, Vec3(0.3, 0.4, 18.5));
+
+using Kind = std::pair<ContactNormal, ContactRule>;
 
 /// Two overlapping balls of particles, slightly shaken.
-SurfaceContact ball_contact(ContactNormal normal) {
+SurfaceContact ball_contact(const Kind& kind) {
   return SurfaceContact(make_particle_surface(ball.triangles),
                         make_particle_surface(test::after(ball, other_ball)),
-                        {.stiffness = 50.0, .normal = normal});
+                        {.stiffness = 50.0, .normal = kind.first, .rule = kind.second});
 }
 const VecX ball_x = test::shaken(test::stacked(ball, other_ball), 0.01);
 
@@ -27,11 +32,14 @@ VecX force_of(const SurfaceContact& contact, const VecX& x) {
   return force;
 }
 
-class SurfaceContactNormals : public testing::TestWithParam<ContactNormal> {};
-INSTANTIATE_TEST_SUITE_P(All, SurfaceContactNormals,
-                         testing::Values(ContactNormal::nearest, ContactNormal::smooth));
+class SurfaceContactKinds : public testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(All, SurfaceContactKinds,
+                         testing::Values(Kind{ContactNormal::nearest, ContactRule::pointwise},
+                                         Kind{ContactNormal::smooth, ContactRule::pointwise},
+                                         Kind{ContactNormal::nearest, ContactRule::nodal},
+                                         Kind{ContactNormal::smooth, ContactRule::nodal}));
 
-TEST_P(SurfaceContactNormals, ForceIsTheSlopeOfTheEnergy) {
+TEST_P(SurfaceContactKinds, ForceIsTheSlopeOfTheEnergy) {
   SurfaceContact contact = ball_contact(GetParam());
   contact.update_pairs(ball_x);
   contact.update_multipliers(ball_x);
@@ -48,7 +56,7 @@ TEST_P(SurfaceContactNormals, ForceIsTheSlopeOfTheEnergy) {
   }
 }
 
-TEST_P(SurfaceContactNormals, JacobianIsTheSlopeOfTheForce) {
+TEST_P(SurfaceContactKinds, JacobianIsTheSlopeOfTheForce) {
   SurfaceContact contact = ball_contact(GetParam());
   contact.update_pairs(ball_x);
   const Index n = static_cast<Index>(ball_x.size() / 3);
@@ -66,7 +74,7 @@ TEST_P(SurfaceContactNormals, JacobianIsTheSlopeOfTheForce) {
   EXPECT_LE((product + 2.0 * difference).norm(), 1e-5 * product.norm());
 }
 
-TEST_P(SurfaceContactNormals, ForceAndMomentBalance) {
+TEST_P(SurfaceContactKinds, ForceAndMomentBalance) {
   SurfaceContact contact = ball_contact(GetParam());
   contact.update_pairs(ball_x);
   const VecX force = force_of(contact, ball_x);
@@ -81,7 +89,7 @@ TEST_P(SurfaceContactNormals, ForceAndMomentBalance) {
   EXPECT_LE(moment.norm(), 1e-12 * on_slave.norm() * 20.0);
 }
 
-TEST_P(SurfaceContactNormals, AreBitIdenticalForOneAndEightThreads) {
+TEST_P(SurfaceContactKinds, AreBitIdenticalForOneAndEightThreads) {
   const auto run = [&] {
     SurfaceContact contact = ball_contact(GetParam());
     contact.update_pairs(ball_x);
@@ -107,8 +115,10 @@ TEST(SurfaceContact, PressureDoesNotDependOnMeshOrQuadrature) {
   const double exact = 100.0 * 0.02 * 100.0;  // stiffness, depth, area
   for (const auto quadrature : {ContactQuadrature::vertices, ContactQuadrature::three_points,
                                 ContactQuadrature::six_points}) {
-    for (const Index n : {1, 4, 9}) {
-      EXPECT_NEAR(plate_force(n, {.quadrature = quadrature}), exact, 1e-9 * exact);
+    for (const auto rule : {ContactRule::pointwise, ContactRule::nodal}) {
+      for (const Index n : {1, 4, 9}) {
+        EXPECT_NEAR(plate_force(n, {.quadrature = quadrature, .rule = rule}), exact, 1e-9 * exact);
+      }
     }
   }
 }
@@ -125,7 +135,7 @@ TEST(SurfaceContact, PairsOnlySurfacesThatFaceEachOther) {
   for (const auto& [facing, count] : {std::pair{-1.0, 24}, std::pair{0.5, 0}}) {
     SurfaceContact contact(make_particle_surface(same_way.triangles), floor, {.facing = facing});
     contact.update_pairs(test::stacked(same_way));
-    EXPECT_EQ(contact.pairs().size(), static_cast<std::size_t>(count));
+    EXPECT_EQ(contact.constraints().size(), static_cast<std::size_t>(count));
   }
 }
 TEST(SurfaceContact, DoesNotPairWhatLiesBeyondAnOpenBorder) {
@@ -172,9 +182,42 @@ TEST(SurfaceContact, MultipliersCarryTheLoadAtZeroPenetration) {
   contact.update_pairs(x);
   EXPECT_NEAR(contact.update_multipliers(x), 0.02, 1e-12);
   for (Index i = 2; i < x.size(); i += 3) x[i] = 0.0;
-  EXPECT_NEAR(contact.pressure(contact.pairs().front(), x), 2.0, 1e-12);
+  EXPECT_NEAR(contact.pressure(contact.constraints().front(), x), 2.0, 1e-12);
   contact.clear_multipliers();
-  EXPECT_EQ(contact.pressure(contact.pairs().front(), x), 0.0);
+  EXPECT_EQ(contact.pressure(contact.constraints().front(), x), 0.0);
+}
+TEST(SurfaceContact, CurvatureMakesFacetsTheSphereTheyComeFrom) {
+  // a fine sphere inside a coarse one of the same radius: their facets are up to 0.12 mm apart, the
+  // patches not
+  const TriMesh coarse = test::icosphere(2, 10.0), fine = test::icosphere(4, 10.0);
+  const auto largest_gap = [&](bool curved) {
+    SurfaceContact contact(make_particle_surface(test::turned_over(coarse).triangles), fine,
+                           {.normal = ContactNormal::smooth});
+    const VecX x = test::stacked(coarse);
+    if (curved) contact.update_curvature(x);
+    contact.update_pairs(x);
+    double largest = 0.0;
+    for (const ContactSample& sample : contact.samples(x))
+      largest = std::max(largest, std::abs(sample.gap));
+    return largest;
+  };
+  EXPECT_GT(largest_gap(false), 0.1);
+  EXPECT_LT(largest_gap(true), 0.01);
+}
+TEST(SurfaceContact, PatternWithAnObstacleDoesNotDependOnThePairs) {
+  const TriMesh plate = test::turned_over(test::plate(-0.02, 5.0, 3)),
+                floor = test::plate(0.0, 2.0, 3);
+  for (const auto rule : {ContactRule::pointwise, ContactRule::nodal}) {
+    SurfaceContact contact(make_particle_surface(plate.triangles), floor, {.rule = rule});
+    const auto before = contact.pattern();
+    const VecX x = test::stacked(plate);
+    contact.update_pairs(x);
+    EXPECT_EQ(contact.pattern(), before);
+    solve::BlockMatrix A(plate.n_vertices(), before);
+    A.set_zero();
+    contact.add_jacobian(x, VecX(), 1.0, 0.0, A);  // aborts on a block outside the pattern
+    EXPECT_GT(A.at(5, 5)(2, 2), 0.0);
+  }
 }
 TEST(SurfaceContact, StiffnessCanBeRaisedLater) {
   const TriMesh plate = test::turned_over(test::plate(-0.02, 5.0, 2)),
@@ -183,7 +226,7 @@ TEST(SurfaceContact, StiffnessCanBeRaisedLater) {
   contact.update_stiffness(500.0);
   const VecX x = test::stacked(plate);
   contact.update_pairs(x);
-  EXPECT_NEAR(contact.pressure(contact.pairs().front(), x), 10.0, 1e-12);
+  EXPECT_NEAR(contact.pressure(contact.constraints().front(), x), 10.0, 1e-12);
   EXPECT_THROW(contact.update_stiffness(0.0), Error);
 }
 TEST(SurfaceContact, RejectsBadOptionsWithTheirValue) {

@@ -25,6 +25,13 @@ enum class ContactQuadrature {
   six_points     ///< six points a triangle, exact for quartics
 };
 
+/// What is kept from overlapping.
+enum class ContactRule {
+  pointwise,  ///< every sample by itself
+  nodal  ///< every slave vertex, by the mean of the gaps around it weighted with its shape function
+         ///< (mortar)
+};
+
 struct ContactOptions {
   double stiffness = 100.0;      ///< MPa/mm, > 0: pressure for a millimetre of penetration
   double minimum_gap = 0.0;      ///< mm: the surfaces are pushed apart below this distance
@@ -32,17 +39,27 @@ struct ContactOptions {
   double facing = -1.0;          ///< in [-1, 1): least -n_slave·n_other of a pair; -1 accepts all
   ContactNormal normal = ContactNormal::nearest;
   ContactQuadrature quadrature = ContactQuadrature::three_points;
+  ContactRule rule = ContactRule::pointwise;
 };
 
-/// A slave sample and what it faces, frozen between two calls of update_pairs:
-/// gap = normal · sum of weight x[particle] over stencil [first, last) - offset.
+/// A slave sample and the point of the other surface that it faces.
 struct ContactPair {
-  Index sample = 0;            ///< number in [0, n_samples)
-  Index other_triangle = 0;    ///< of the other surface
+  Index sample = 0;
+  Index other_triangle = 0;
+  Vec3 other_barycentric = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  ///< unit, from the other surface towards the slave
-  double offset = 0.0;         ///< mm
-  double area = 0.0;           ///< mm²
-  Index first = 0, last = 0;   ///< range in the stencil
+  double offset = 0.0;         ///< mm: gap = normal · (sample - point) - offset
+};
+
+/// One thing kept from overlapping, frozen between two calls of update_pairs:
+/// gap = sum of stencil_vectors[k] · x[stencil_particles[k]] over [first, last) - offset.
+struct ContactConstraint {
+  Index owner = 0;  ///< the sample, or the slave surface's vertex with the nodal rule
+  Vec3 normal =
+      Vec3::Zero();     ///< from the other surface towards the slave; a mean with the nodal rule
+  double offset = 0.0;  ///< mm
+  double area = 0.0;    ///< mm²
+  Index first = 0, last = 0;  ///< range in the stencil
 };
 
 /// State of one slave sample.
@@ -78,6 +95,9 @@ class SurfaceContact : public dynamics::Force {
   void update_pairs(const VecX& x);
   /// Moves the obstacle's vertices; takes effect at the next update_pairs.
   void update_obstacle(const Points& points);
+  /// Takes the surfaces as smooth with the curvature they have at x: from now on samples and the
+  /// points they face lie on quadratic patches through the vertices instead of on flat triangles.
+  void update_curvature(const VecX& x);
   /// Sets every multiplier to the pressure at x, and returns the largest penetration, mm.
   double update_multipliers(const VecX& x);
   void clear_multipliers();
@@ -89,36 +109,44 @@ class SurfaceContact : public dynamics::Force {
                     solve::BlockMatrix& A) const override;
   double energy(const VecX& x) const override;
 
-  double gap(const ContactPair& pair, const VecX& x) const;       ///< mm, beyond minimum_gap
-  double pressure(const ContactPair& pair, const VecX& x) const;  ///< MPa
+  double gap(const ContactConstraint& constraint, const VecX& x) const;  ///< mm, beyond minimum_gap
+  double pressure(const ContactConstraint& constraint, const VecX& x) const;  ///< MPa
   double stiffness() const { return options_.stiffness; }
-  const std::vector<ContactPair>& pairs() const { return pairs_; }
+  const std::vector<ContactConstraint>& constraints() const { return constraints_; }
   const std::vector<Index>& stencil_particles() const { return stencil_particles_; }
-  const std::vector<double>& stencil_weights() const { return stencil_weights_; }
+  const std::vector<Vec3>& stencil_vectors() const { return stencil_vectors_; }
   Index n_samples() const { return static_cast<Index>(samples_.size()); }
   /// All samples at x, paired or not.
   std::vector<ContactSample> samples(const VecX& x) const;
   const ParticleSurface& slave() const { return slave_; }
 
  private:
-  struct Candidate;
+  using Entries = std::vector<std::pair<Index, Vec3>>;  // particle, d gap / d x
   void make_samples();
   void update_areas(const VecX& areas);
   void prepare_other(const VecX& x);
-  void append_pair(Index sample, const Candidate& candidate, double area);
+  void append_entries(const ContactPair& pair, double share, Entries& entries) const;
+  void append_constraint(ContactConstraint constraint, Entries& entries);
+  void make_pointwise_constraints();
+  void make_nodal_constraints();
+  std::vector<std::vector<Index>> slave_groups() const;
+  double obstacle_height(const ContactPair& pair) const;
+  Vec3 other_point(const ContactPair& pair, const Points& points) const;
 
   ContactOptions options_;
   ParticleSurface slave_;
   std::optional<ParticleSurface> other_;  ///< nullopt: rigid obstacle
   TriMesh other_mesh_;                    ///< current positions of the other surface
   std::vector<ContactSample> samples_;    ///< triangle and barycentric; areas as of the last update
-  std::vector<double> multiplier_;        ///< per sample, MPa
+  Points slave_bulge_, other_bulge_;      ///< per triangle and edge, mm; empty: flat facets
+  std::vector<double> multiplier_;        ///< per owner, MPa
   std::optional<TriangleTree> tree_;
   Eigen::Matrix<bool, Eigen::Dynamic, 3, Eigen::RowMajor> boundary_edge_;
   std::vector<bool> boundary_vertex_;
-  std::vector<ContactPair> pairs_;
+  std::vector<ContactPair> pairs_;  ///< ascending sample
+  std::vector<ContactConstraint> constraints_;
   std::vector<Index> stencil_particles_;
-  std::vector<double> stencil_weights_;
+  std::vector<Vec3> stencil_vectors_;
 };
 
 }  // namespace coxa::collide

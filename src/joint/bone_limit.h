@@ -1,0 +1,31 @@
+#pragma once
+
+#include <coxa/collide/rigid_pair.h>
+#include <coxa/joint/joint_model.h>
+#include <coxa/joint/joint_result.h>
+
+#include <optional>
+
+namespace coxa::joint {
+
+/// Watches the distance of femur and hip bone outside the cartilage-covered head.
+class BoneLimit {
+ public:
+  /// Without bone surfaces there is no limit: every clearance is NaN.
+  explicit BoneLimit(const JointModel& model);
+
+  /// Least distance of the bones at a pose, mm, negative overlap; NaN where they are not near.
+  double clearance(const RigidTransform& X_II) const;
+  /// Where on the way from `apart` to `together` (which overlaps) the bones first touch.
+  collide::FirstContact first_touch(const std::function<RigidTransform(double)>& pose_at) const;
+
+ private:
+  std::optional<collide::RigidPair> pair_;
+};
+
+/// Per femur vertex whether contact there is a bony limit: not on the head, that is not within 2 mm
+/// of the femoral cartilage and not on the head's sphere within 60 degrees of the cartilage's
+/// middle (the fovea).
+std::vector<bool> limit_vertices(const JointModel& model);
+
+}  // namespace coxa::joint

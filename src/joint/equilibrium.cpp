@@ -1,0 +1,201 @@
+#include "equilibrium.h"
+
+#include <coxa/core/error.h>
+#include <coxa/dynamics/system.h>
+#include <coxa/solve/newton.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace coxa::joint {
+namespace {
+
+// longest move of a node in one Newton step, mm: a fraction of the cartilage's thickness
+constexpr double kMaxNodeStep = 0.3;
+// linear solves need not be better than this far from equilibrium, nor better than that near it
+constexpr double kLoosestLinear = 0.1, kTightestLinear = 1e-3;
+
+/// How the gap of a constraint changes with the translation.
+Vec3 translation_slope(const collide::SurfaceContact& contact,
+                       const collide::ContactConstraint& constraint, Index translation) {
+  Vec3 slope = Vec3::Zero();
+  for (Index k = constraint.first; k < constraint.last; ++k) {
+    if (contact.stencil_particles()[static_cast<std::size_t>(k)] == translation) {
+      slope += contact.stencil_vectors()[static_cast<std::size_t>(k)];
+    }
+  }
+  return slope;
+}
+
+}  // namespace
+
+Vec3 contact_force(const collide::SurfaceContact& contact, const VecX& x) {
+  Vec3 sum = Vec3::Zero();
+  for (const collide::ContactConstraint& constraint : contact.constraints()) {
+    sum += contact.pressure(constraint, x) * constraint.area * constraint.normal;
+  }
+  return sum;
+}
+
+Equilibrium::Equilibrium(const HipSystem& system, LoadMode mode, const JointOptions& options)
+    : system_(system),
+      mode_(mode),
+      options_(options),
+      free_(system.free_particles(mode)),
+      tangent_(free_, dynamics::total_pattern(system.elastic())) {}
+
+VecX Equilibrium::residual(const HipState& state, const Vec3& force) const {
+  VecX sum = dynamics::total_force(system_.elastic(), state.x, VecX::Zero(state.x.size()));
+  state.contact.add_force(state.x, VecX(), sum);
+  if (mode_ == LoadMode::force) sum.segment<3>(3 * system_.translation()) += force;
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    if (!free_[i]) sum.segment<3>(3 * static_cast<Eigen::Index>(i)).setZero();
+  }
+  return sum;
+}
+
+double Equilibrium::reference_force(const HipState& state, const Vec3& force) const {
+  constexpr double kLeast = 1.0;  // N: below this a prescribed pose does not press
+  return mode_ == LoadMode::force ? force.norm()
+                                  : std::max(kLeast, contact_force(state.contact, state.x).norm());
+}
+
+SolveReport Equilibrium::relax(HipState& state, const Vec3& force, double tolerance,
+                               double reference) {
+  HipState trial{state.x, state.pose, state.contact};
+  const auto at = [&](const VecX& x) -> const HipState& {
+    trial.x = x;
+    return trial;
+  };
+  const solve::NewtonProblem problem{
+      .residual = [&](const VecX& x) { return residual(at(x), force); },
+      .step =
+          [&](const VecX& x, const VecX& r) {
+            tangent_.update(system_.elastic(), state.contact, x);
+            const double wanted = 0.3 * tolerance * reference / r.norm();
+            VecX step;
+            tangent_.solve(r, std::clamp(wanted, kTightestLinear, kLoosestLinear), step);
+            return step;
+          },
+      .energy =
+          [&](const VecX& x) {
+            const double work =
+                mode_ == LoadMode::force ? force.dot(x.segment<3>(3 * system_.translation())) : 0.0;
+            return dynamics::total_energy(system_.elastic(), x) + state.contact.energy(x) - work;
+          }};
+  return solve::newton(problem, state.x,
+                       {.tolerance = tolerance,
+                        .scale = reference,
+                        .max_iterations = options_.max_newton_iterations,
+                        .max_step = kMaxNodeStep});
+}
+
+std::string Equilibrium::touch(HipState& state, const Vec3& direction) const {
+  const auto t = 3 * system_.translation();
+  double way = kInfinity;
+  for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
+    const double closing =
+        -translation_slope(state.contact, constraint, system_.translation()).dot(direction);
+    const double gap = state.contact.gap(constraint, state.x);
+    if (gap <= 0.0) return "";
+    if (closing > 0.1) way = std::min(way, gap / closing);
+  }
+  if (way == kInfinity) {
+    return "the articular surfaces do not face each other along the joint force: nothing to press "
+           "against";
+  }
+  state.x.segment<3>(t) += (way + 0.01) * direction;
+  return "";
+}
+
+std::string Equilibrium::seat(HipState& state, const Vec3& force) const {
+  constexpr int kMaxRounds = 60;
+  constexpr double kMaxMove = 0.5, kSettled = 2e-3;  // mm
+  const auto t = 3 * system_.translation();
+  state.contact.clear_multipliers();
+  state.contact.update_stiffness(system_.foundation_stiffness());
+  std::string reason = "rigid seating of the head did not settle";
+  for (int round = 0; round < kMaxRounds; ++round) {
+    state.contact.update_pairs(state.x);
+    // translation alone against the springs that the pairs make
+    Vec3 pull = force;
+    Mat3 stiffness = Mat3::Zero();
+    for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
+      const double p = state.contact.pressure(constraint, state.x);
+      if (p == 0.0) continue;
+      const Vec3 slope = translation_slope(state.contact, constraint, system_.translation());
+      pull += p * constraint.area * slope;
+      stiffness += state.contact.stiffness() * constraint.area * slope * slope.transpose();
+    }
+    if (stiffness.trace() == 0.0) {
+      const Vec3 before = state.x.segment<3>(t);
+      reason = touch(state, force.normalized());
+      if (!reason.empty()) break;
+      if ((state.x.segment<3>(t) - before).norm() == 0.0) break;
+      reason = "rigid seating of the head did not settle";
+    } else {
+      stiffness.diagonal().array() += 0.02 * stiffness.trace();
+      Vec3 move = stiffness.inverse() * pull;
+      if (move.norm() > kMaxMove) move *= kMaxMove / move.norm();
+      state.x.segment<3>(t) += move;
+      if (move.norm() < kSettled) {
+        reason.clear();
+        break;
+      }
+    }
+    if (state.x.segment<3>(t).norm() > options_.max_translation) {
+      reason = join_text("the head leaves the socket: it moved ", state.x.segment<3>(t).norm(),
+                         " mm under the joint force, limit ", options_.max_translation, " mm");
+      break;
+    }
+  }
+  state.contact.update_stiffness(options_.contact_stiffness);
+  return reason;
+}
+
+Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exactness,
+                             const Monitor& monitor) {
+  const bool exact = exactness == Exactness::result;
+  const double tolerance = exact ? options_.residual_tolerance : 20.0 * options_.residual_tolerance;
+  const double overlap =
+      exact ? options_.penetration_tolerance : 10.0 * options_.penetration_tolerance;
+  Settling settling;
+  for (int round = 0; round <= options_.max_contact_updates; ++round) {
+    monitor.check_cancelled();
+    state.contact.update_pairs(state.x);
+    const double reference = reference_force(state, force);
+    settling.residual = residual(state, force).norm() / reference;
+    settling.penetration = 0.0;
+    for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
+      settling.penetration =
+          std::max(settling.penetration, -state.contact.gap(constraint, state.x));
+    }
+    settling.converged = settling.residual <= tolerance && settling.penetration <= overlap;
+    if (settling.converged || round == options_.max_contact_updates) break;
+    if (settling.residual <= 10.0 * tolerance && settling.penetration > overlap) {
+      state.contact.update_multipliers(state.x);
+    }
+    const SolveReport newton = relax(state, force, 0.3 * tolerance, reference);
+    settling.iterations += newton.iterations;
+    settling.reason = newton.reason;
+    const double way = state.x.segment<3>(3 * system_.translation()).norm();
+    if (!(way <= options_.max_translation)) {
+      settling.reason =
+          join_text("the head leaves the socket: it moved ", way,
+                    " mm under the joint force, limit ", options_.max_translation, " mm");
+      return settling;
+    }
+  }
+  if (settling.converged) {
+    settling.reason.clear();
+  } else {
+    settling.reason = join_text(
+        "no equilibrium after ", settling.iterations, " Newton steps: residual ", settling.residual,
+        " of the joint force (limit ", tolerance, "), penetration ", settling.penetration,
+        " mm (limit ", overlap, " mm)", settling.reason.empty() ? "" : "; " + settling.reason);
+  }
+  return settling;
+}
+
+}  // namespace coxa::joint

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <coxa/core/monitor.h>
+#include <coxa/joint/simulate.h>
+
+#include <optional>
+
+#include "hip_system.h"
+#include "hip_tangent.h"
+
+namespace coxa::joint {
+
+/// Positions, pose and contact state of the hip: all that a sub-step changes.
+struct HipState {
+  VecX x;
+  BonePose pose;
+  collide::SurfaceContact contact;
+};
+
+/// How well a state is settled, and what it cost.
+struct Settling {
+  bool converged = false;
+  std::string reason;
+  double residual = 0.0;     ///< of the free nodes, relative to the joint force
+  double penetration = 0.0;  ///< mm
+  int iterations = 0;        ///< Newton steps
+};
+
+/// How exact a settling must be.
+enum class Exactness { on_the_way, result };
+
+/// Static equilibrium of the hip at a bone pose under a joint force (or with the translation held).
+class Equilibrium {
+ public:
+  /// @note keeps references to system and options, which must outlive it
+  Equilibrium(const HipSystem& system, LoadMode mode, const JointOptions& options);
+
+  /// Places the femur where rigid bones with springy cartilage would balance `force`: the start of
+  /// everything.
+  /// @returns why it cannot, or empty
+  std::string seat(HipState& state, const Vec3& force) const;
+  /// Finds the equilibrium from the positions in `state`.
+  Settling settle(HipState& state, const Vec3& force, Exactness exactness, const Monitor& monitor);
+
+  /// Forces of free particles at the state, N, zero at held ones.
+  VecX residual(const HipState& state, const Vec3& force) const;
+  /// Size against which residuals count: the joint force, or the contact force of a prescribed
+  /// pose, N.
+  double reference_force(const HipState& state, const Vec3& force) const;
+
+ private:
+  SolveReport relax(HipState& state, const Vec3& force, double tolerance, double reference);
+  std::string touch(HipState& state, const Vec3& direction) const;
+
+  const HipSystem& system_;
+  LoadMode mode_;
+  const JointOptions& options_;
+  std::vector<bool> free_;
+  HipTangent tangent_;
+};
+
+/// Sum of pressure times area times normal over the pairs: force of the femur on the socket, N.
+Vec3 contact_force(const collide::SurfaceContact& contact, const VecX& x);
+
+}  // namespace coxa::joint

@@ -1,0 +1,187 @@
+#include "frame_figures.h"
+
+#include <coxa/dynamics/system.h>
+#include <coxa/joint/simulate.h>
+#include <coxa/mesh/measures.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace coxa::joint {
+namespace {
+
+constexpr double kPatchArea = 5.0;  // mm²
+
+void fill_contact(FrameResult& frame, const std::vector<collide::ContactSample>& samples,
+                  const Vec3& force, const ClockFace& clock) {
+  ContactFigures& contact = frame.contact;
+  double total_area = 0.0, total_force = 0.0;
+  Vec3 weighted = Vec3::Zero();
+  for (const collide::ContactSample& sample : samples) {
+    total_area += sample.area;
+    if (sample.gap < 0.0) contact.penetration = std::max(contact.penetration, -sample.gap);
+    if (sample.pressure == 0.0) continue;
+    contact.contact_area += sample.area;
+    total_force += sample.pressure * sample.area;
+    weighted += sample.pressure * sample.area * sample.point;
+  }
+  contact.peak_pressure_p99 = pressure_percentile(samples, 0.99);
+  contact.peak_pressure_p95 = pressure_percentile(samples, 0.95);
+  contact.peak_pressure_patch = patch_peak(samples, kPatchArea);
+  contact.contact_share = contact.contact_area / total_area;
+  if (contact.contact_area > 0.0) {
+    contact.mean_pressure = total_force / contact.contact_area;
+    contact.centre_of_pressure = weighted / total_force;
+    contact.centre_hour = clock.hour(contact.centre_of_pressure);
+  }
+  frame.balance.contact_force = force;
+}
+
+/// Pressures and gaps of the socket's nodes: means of the samples around them, weighted by their
+/// share.
+void fill_socket_nodes(FrameResult& frame, const collide::SurfaceContact& contact,
+                       const std::vector<collide::ContactSample>& samples, Index n) {
+  VecX weight = VecX::Zero(n), gap_weight = VecX::Zero(n), gap = VecX::Zero(n);
+  frame.acetabular_pressure = VecX::Zero(n);
+  for (const collide::ContactSample& sample : samples) {
+    for (int k = 0; k < 3; ++k) {
+      const Index vertex = contact.slave().triangles(sample.triangle, k);
+      const Index node = contact.slave().particle[static_cast<std::size_t>(vertex)];
+      const double share = sample.barycentric[k] * sample.area;
+      weight[node] += share;
+      frame.acetabular_pressure[node] += share * sample.pressure;
+      if (std::isnan(sample.gap)) continue;
+      gap_weight[node] += share;
+      gap[node] += share * sample.gap;
+    }
+  }
+  frame.acetabular_gap = VecX::Constant(n, kNaN);
+  for (Index i = 0; i < n; ++i) {
+    if (weight[i] > 0.0) frame.acetabular_pressure[i] /= weight[i];
+    if (gap_weight[i] > 0.0) frame.acetabular_gap[i] = gap[i] / gap_weight[i];
+  }
+}
+
+/// Pressures of the head's nodes: the forces they receive over the area around them.
+void fill_head_nodes(FrameResult& frame, const JointModel& model, const HipSystem& system,
+                     const HipState& state) {
+  const Index n = system.n_femoral();
+  VecX force = VecX::Zero(n), area = VecX::Zero(n);
+  for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
+    const double push = state.contact.pressure(constraint, state.x) * constraint.area;
+    if (push == 0.0) continue;
+    for (Index k = constraint.first; k < constraint.last; ++k) {
+      const Index particle = state.contact.stencil_particles()[static_cast<std::size_t>(k)];
+      if (particle < system.n_acetabular() || particle == system.translation()) continue;
+      force[particle - system.n_acetabular()] +=
+          push * state.contact.stencil_vectors()[static_cast<std::size_t>(k)].norm();
+    }
+  }
+  TriMesh articular{Points(n, 3), facets_with(model.femoral_cartilage, FacetTag::articular_side)};
+  for (Index i = 0; i < n; ++i) {
+    articular.points.row(i) = state.x.segment<3>(3 * (system.n_acetabular() + i)).transpose();
+  }
+  const VecX areas = triangle_areas(articular);
+  for (Index f = 0; f < articular.n_triangles(); ++f) {
+    for (int k = 0; k < 3; ++k) area[articular.triangles(f, k)] += areas[f] / 3.0;
+  }
+  frame.femoral_pressure = VecX::Zero(n);
+  for (Index i = 0; i < n; ++i) {
+    if (area[i] > 0.0) frame.femoral_pressure[i] = std::max(0.0, force[i] / area[i]);
+  }
+}
+
+void fill_displacements(FrameResult& frame, const JointModel& model, const HipSystem& system,
+                        const HipState& state) {
+  frame.acetabular_displacement.resize(system.n_acetabular(), 3);
+  frame.femoral_displacement.resize(system.n_femoral(), 3);
+  const Vec3 found = state.x.segment<3>(3 * system.translation());
+  for (Index i = 0; i < system.n_acetabular(); ++i) {
+    frame.acetabular_displacement.row(i) =
+        state.x.segment<3>(3 * i).transpose() - model.acetabular_cartilage.points.row(i);
+  }
+  for (Index i = 0; i < system.n_femoral(); ++i) {
+    const Vec3 now = state.x.segment<3>(3 * (system.n_acetabular() + i)) + found;
+    const Vec3 moved = frame.X_II * Vec3(model.femoral_cartilage.points.row(i));
+    frame.femoral_displacement.row(i) = (now - moved).transpose();
+  }
+}
+
+template <std::size_t N>
+void fill_sectors(std::array<SectorFigures, N>& sectors, const JointModel& model,
+                  const StressFields& fields, const std::vector<collide::ContactSample>& samples,
+                  const std::function<std::size_t(const Vec3&)>& sector_of) {
+  const TetMesh& mesh = model.acetabular_cartilage;
+  std::array<double, N> strain{}, compression{}, area{}, force{};
+  for (Index t = 0; t < mesh.n_tets(); ++t) {
+    const Points corners = mesh.points(mesh.tets.row(t), Eigen::all);
+    const std::size_t sector = sector_of(corners.colwise().mean().transpose());
+    Mat3 edges;
+    for (int k = 0; k < 3; ++k) edges.col(k) = (corners.row(k + 1) - corners.row(0)).transpose();
+    const double volume = edges.determinant() / 6.0;
+    const Vec3 principal = fields.principal_strain.row(t);
+    const Vec3 deviator = principal.array() - principal.mean();
+    sectors[sector].volume += volume;
+    strain[sector] += volume * std::sqrt(2.0 / 3.0 * deviator.squaredNorm());
+    compression[sector] += volume * principal[2];
+  }
+  for (const collide::ContactSample& sample : samples) {
+    const std::size_t sector = sector_of(sample.point);
+    area[sector] += sample.area;
+    force[sector] += sample.area * sample.pressure;
+  }
+  for (std::size_t s = 0; s < N; ++s) {
+    if (sectors[s].volume > 0.0) {
+      sectors[s].strain = strain[s] / sectors[s].volume;
+      sectors[s].compression = compression[s] / sectors[s].volume;
+    }
+    if (area[s] > 0.0) sectors[s].mean_pressure = force[s] / area[s];
+  }
+}
+
+}  // namespace
+
+Reactions bone_reactions(const HipSystem& system, const VecX& x) {
+  const VecX force = dynamics::total_force(system.elastic(), x, VecX::Zero(x.size()));
+  Reactions reactions;
+  for (const Index i : system.socket_nodes()) reactions.socket += force.segment<3>(3 * i);
+  for (const Index i : system.femur_nodes()) reactions.femur += force.segment<3>(3 * i);
+  return reactions;
+}
+
+void update_figures(FrameResult& frame, const JointModel& model, const HipSystem& system,
+                    const HipState& state, const ClockFace& clock) {
+  const std::vector<collide::ContactSample> samples = state.contact.samples(state.x);
+  const Vec3 force = contact_force(state.contact, state.x);
+  fill_displacements(frame, model, system, state);
+  fill_contact(frame, samples, force, clock);
+  fill_socket_nodes(frame, state.contact, samples, system.n_acetabular());
+  fill_head_nodes(frame, model, system, state);
+
+  BalanceFigures& balance = frame.balance;
+  const Reactions reactions = bone_reactions(system, state.x);
+  balance.socket_reaction = reactions.socket;
+  balance.femur_reaction = reactions.femur;
+  balance.elastic_energy = dynamics::total_energy(system.elastic(), state.x);
+  for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
+    const double gap = std::min(0.0, state.contact.gap(constraint, state.x));
+    balance.contact_energy += 0.5 * state.contact.stiffness() * constraint.area * gap * gap;
+  }
+  if (force.norm() > 0.0) {
+    balance.reaction_error = (reactions.socket + reactions.femur).norm() / force.norm();
+  }
+  if (balance.applied_force.allFinite()) {
+    balance.force_error = (force - balance.applied_force).norm() / balance.applied_force.norm();
+  }
+
+  const StressFields fields = acetabular_fields(model, frame);
+  fill_sectors(frame.sectors, model, fields, samples,
+               [&](const Vec3& p) { return static_cast<std::size_t>(clock.sector(p)); });
+  // regions are two hours wide, the first around twelve
+  fill_sectors(frame.regions, model, fields, samples, [&](const Vec3& p) {
+    return static_cast<std::size_t>(std::floor((clock.hour(p) + 1.0) / 2.0)) % 6;
+  });
+}
+
+}  // namespace coxa::joint

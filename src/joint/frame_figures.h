@@ -1,0 +1,25 @@
+#pragma once
+
+#include <coxa/joint/joint_result.h>
+
+#include "equilibrium.h"
+
+namespace coxa::joint {
+
+/// Fills what a converged frame reports: nodal fields, contact, balance, sectors.
+void update_figures(FrameResult& frame, const JointModel& model, const HipSystem& system,
+                    const HipState& state, const ClockFace& clock);
+
+/// Pressure below which `share` of the pressed area lies, MPa; 0 without contact.
+double pressure_percentile(const std::vector<collide::ContactSample>& samples, double share);
+
+/// Greatest mean pressure over a disc of `area` mm² around any pressed sample, MPa.
+double patch_peak(const std::vector<collide::ContactSample>& samples, double area);
+
+/// Forces of the elastic bodies on their held bone-side nodes, summed: socket and femur, N.
+struct Reactions {
+  Vec3 socket = Vec3::Zero(), femur = Vec3::Zero();
+};
+Reactions bone_reactions(const HipSystem& system, const VecX& x);
+
+}  // namespace coxa::joint

@@ -1,0 +1,128 @@
+#include "hip_system.h"
+
+#include <coxa/geom/fits.h>
+#include <coxa/mesh/measures.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "elasticity.h"
+
+namespace coxa::joint {
+namespace {
+
+// articular surfaces look for each other this far, mm; deeper overlaps and wider gaps are not
+// paired
+constexpr double kSearchDistance = 4.0;
+// and only where they face each other within about 70 degrees
+constexpr double kFacing = 0.35;
+
+std::vector<Index> nodes_of(const Triangles& facets, Index first) {
+  std::vector<Index> nodes(facets.data(), facets.data() + facets.size());
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  for (Index& node : nodes) node += first;
+  return nodes;
+}
+
+/// Volume over articular area, mm.
+double mean_thickness(const TetMesh& mesh) {
+  double volume = 0.0;
+  for (Index t = 0; t < mesh.n_tets(); ++t) {
+    const Vec3 a = mesh.points.row(mesh.tets(t, 0)), b = mesh.points.row(mesh.tets(t, 1)),
+               c = mesh.points.row(mesh.tets(t, 2)), d = mesh.points.row(mesh.tets(t, 3));
+    volume += (b - a).cross(c - a).dot(d - a) / 6.0;
+  }
+  return volume / area({mesh.points, facets_with(mesh, FacetTag::articular_side)});
+}
+
+}  // namespace
+
+BonePose between(const BonePose& a, const BonePose& b, double s) {
+  const Vec3 turn = rotation_vector(b.R * a.R.transpose());
+  return {rotation_from_vector(s * turn) * a.R, (1.0 - s) * a.shift + s * b.shift};
+}
+
+HipSystem::HipSystem(const JointModel& model)
+    : model_(model),
+      n_acetabular_(model.acetabular_cartilage.n_vertices()),
+      n_femoral_(model.femoral_cartilage.n_vertices()),
+      centre_(model.X_IF.p),
+      socket_nodes_(nodes_of(facets_with(model.acetabular_cartilage, FacetTag::bone_side), 0)),
+      femur_nodes_(
+          nodes_of(facets_with(model.femoral_cartilage, FacetTag::bone_side), n_acetabular_)),
+      socket_elasticity_(make_elasticity(model.acetabular_cartilage, 0, model.material)),
+      femur_elasticity_(make_elasticity(model.femoral_cartilage, n_acetabular_, model.material)) {
+  const double E = model.material.youngs_modulus, nu = model.material.poissons_ratio;
+  const double confined_modulus = E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+  foundation_stiffness_ = confined_modulus / (mean_thickness(model.acetabular_cartilage) +
+                                              mean_thickness(model.femoral_cartilage));
+}
+
+VecX HipSystem::reference() const {
+  VecX x = VecX::Zero(3 * n_particles());
+  for (Index i = 0; i < n_acetabular_; ++i) {
+    x.segment<3>(3 * i) = model_.acetabular_cartilage.points.row(i).transpose();
+  }
+  for (Index i = 0; i < n_femoral_; ++i) {
+    x.segment<3>(3 * (n_acetabular_ + i)) = model_.femoral_cartilage.points.row(i).transpose();
+  }
+  return x;
+}
+
+void HipSystem::update_pose(VecX& x, const BonePose& from, const BonePose& to) const {
+  const Mat3 turn = to.R * from.R.transpose();
+  for (Index i = n_acetabular_; i < translation(); ++i) {
+    const Vec3 arm = x.segment<3>(3 * i) - centre_ - from.shift;
+    x.segment<3>(3 * i) = centre_ + to.shift + turn * arm;
+  }
+  // held nodes exactly, so that rounding does not add up over many sub-steps
+  for (const Index i : femur_nodes_) {
+    const Vec3 X = model_.femoral_cartilage.points.row(i - n_acetabular_);
+    x.segment<3>(3 * i) = centre_ + to.shift + to.R * (X - centre_);
+  }
+}
+
+collide::SurfaceContact HipSystem::make_contact(double stiffness) const {
+  const Triangles socket = facets_with(model_.acetabular_cartilage, FacetTag::articular_side);
+  const Triangles femoral = facets_with(model_.femoral_cartilage, FacetTag::articular_side);
+  collide::ParticleSurface head =
+      collide::make_particle_surface((femoral.array() + n_acetabular_).matrix());
+  // every femoral vertex also follows the translation
+  collide::ParticleSurface carried;
+  carried.triangles = head.triangles;
+  carried.row_start = {0};
+  for (const Index particle : head.particle) {
+    carried.particle.insert(carried.particle.end(), {particle, translation()});
+    carried.weight.insert(carried.weight.end(), {1.0, 1.0});
+    carried.row_start.push_back(static_cast<Index>(carried.particle.size()));
+  }
+  // sample the socket more densely where its facets are the larger ones
+  const double socket_edge = mean_edge_length({model_.acetabular_cartilage.points, socket});
+  const double head_edge = mean_edge_length({model_.femoral_cartilage.points, femoral});
+  const auto quadrature = socket_edge > head_edge ? collide::ContactQuadrature::six_points
+                                                  : collide::ContactQuadrature::three_points;
+  collide::SurfaceContact contact(collide::make_particle_surface(socket), carried,
+                                  {.stiffness = stiffness,
+                                   .search_distance = kSearchDistance,
+                                   .facing = kFacing,
+                                   .normal = collide::ContactNormal::smooth,
+                                   .quadrature = quadrature,
+                                   .rule = collide::ContactRule::nodal});
+  contact.update_curvature(reference());
+  return contact;
+}
+
+std::vector<const dynamics::Force*> HipSystem::elastic() const {
+  return {socket_elasticity_.get(), femur_elasticity_.get()};
+}
+
+std::vector<bool> HipSystem::free_particles(LoadMode mode) const {
+  std::vector<bool> free(static_cast<std::size_t>(n_particles()), true);
+  for (const Index i : socket_nodes_) free[static_cast<std::size_t>(i)] = false;
+  for (const Index i : femur_nodes_) free[static_cast<std::size_t>(i)] = false;
+  if (mode == LoadMode::prescribed_pose) free[static_cast<std::size_t>(translation())] = false;
+  return free;
+}
+
+}  // namespace coxa::joint

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <coxa/collide/surface_contact.h>
+#include <coxa/dynamics/particles.h>
+#include <coxa/joint/joint_model.h>
+#include <coxa/joint/load_case.h>
+
+#include <memory>
+#include <vector>
+
+namespace coxa::joint {
+
+/// Where the femur's bone is, beside the translation found: rotation about the joint centre, then a
+/// shift.
+struct BonePose {
+  Mat3 R = Mat3::Identity();
+  Vec3 shift = Vec3::Zero();  ///< mm, of the joint centre, image axes
+};
+
+/// The pose a share s in [0, 1] of the way from a to b: constant axis, constant rate.
+BonePose between(const BonePose& a, const BonePose& b, double s);
+
+/// The hip as particles: acetabular nodes, femoral nodes, and one for the femur's free translation
+/// t.
+///
+/// Femoral nodes are stored without t (elasticity does not feel it); their true position is y + t.
+/// So t is felt by contact alone, through its weight 1 in every femoral surface vertex.
+class HipSystem {
+ public:
+  /// @note keeps a reference to the model, which must outlive it
+  explicit HipSystem(const JointModel& model);
+
+  Index n_acetabular() const { return n_acetabular_; }
+  Index n_femoral() const { return n_femoral_; }
+  Index translation() const { return n_acetabular_ + n_femoral_; }  ///< its particle
+  Index n_particles() const { return translation() + 1; }
+  const Vec3& centre() const { return centre_; }
+
+  VecX reference() const;  ///< positions in the image pose, t = 0
+  /// Carries the femur from one pose to another, with its deformation; t stays.
+  void update_pose(VecX& x, const BonePose& from, const BonePose& to) const;
+
+  collide::SurfaceContact make_contact(double stiffness) const;
+  std::vector<const dynamics::Force*> elastic() const;
+  /// Particles that may move; t only when it is free.
+  std::vector<bool> free_particles(LoadMode mode) const;
+  /// Held nodes of the acetabular and of the femoral bone side.
+  const std::vector<Index>& socket_nodes() const { return socket_nodes_; }
+  const std::vector<Index>& femur_nodes() const { return femur_nodes_; }
+
+  /// Confined modulus over the sum of both mean thicknesses, MPa/mm: what a millimetre of approach
+  /// is worth.
+  double foundation_stiffness() const { return foundation_stiffness_; }
+
+ private:
+  const JointModel& model_;
+  Index n_acetabular_, n_femoral_;
+  Vec3 centre_;
+  std::vector<Index> socket_nodes_, femur_nodes_;
+  std::unique_ptr<dynamics::Force> socket_elasticity_, femur_elasticity_;
+  double foundation_stiffness_ = 0.0;
+};
+
+}  // namespace coxa::joint

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <coxa/collide/surface_contact.h>
+#include <coxa/core/solve_report.h>
+#include <coxa/dynamics/particles.h>
+#include <coxa/solve/block_matrix.h>
+
+#include <vector>
+
+namespace coxa::joint {
+
+/// Tangent stiffness of the free particles: an assembled elastic part and contact applied pair by
+/// pair.
+///
+/// Contact changes its pattern at every search, so it is not assembled: a pair costs six blocks a
+/// product.
+class HipTangent {
+ public:
+  /// @param free per particle: whether it may move
+  HipTangent(std::vector<bool> free, const std::vector<std::pair<Index, Index>>& elastic_pattern);
+
+  /// Takes the stiffness at x.
+  void update(const std::vector<const dynamics::Force*>& elastic,
+              const collide::SurfaceContact& contact, const VecX& x);
+
+  /// Solves tangent · step = residual (3n values; both zero at held particles) by conjugate
+  /// gradients. Stops early, with what is reached, where the tangent is not positive definite.
+  SolveReport solve(const VecX& residual, double tolerance, VecX& step) const;
+
+ private:
+  struct ContactRow {
+    double stiffness;   // N/mm: penalty times area
+    Index first, last;  // range in row_particle_
+  };
+  void copy_elastic();
+  void copy_contact(const collide::SurfaceContact& contact, const VecX& x);
+  void update_preconditioner();
+  void multiply(const VecX& z, VecX& y) const;
+  VecX preconditioned(const VecX& r) const;
+
+  std::vector<bool> free_;
+  std::vector<Index> compact_;   // per particle its free number; meaningless where held
+  std::vector<Index> particle_;  // per free number its particle
+  solve::BlockMatrix full_, elastic_;
+  std::vector<std::int64_t> source_;  // slot in full_ for every slot of elastic_
+
+  std::vector<ContactRow> rows_;
+  std::vector<Index> row_particle_;  // free numbers
+  std::vector<Vec3> row_slope_;
+  std::vector<Index> use_start_;  // per free particle: its uses by rows
+  std::vector<Index> use_row_;
+  std::vector<Vec3> use_slope_;
+  mutable std::vector<double> row_force_;  // scratch of multiply
+  std::vector<Mat3> inverse_diagonal_;
+};
+
+}  // namespace coxa::joint

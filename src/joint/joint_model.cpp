@@ -1,0 +1,76 @@
+#include <coxa/joint/joint_model.h>
+
+#include <coxa/core/error.h>
+#include <coxa/mesh/measures.h>
+#include <coxa/mesh/topology.h>
+#include <coxa/mesh/vertex_normals.h>
+
+#include <algorithm>
+
+namespace coxa::joint {
+namespace {
+
+// the frames share the joint centre; more than this apart they are mistaken for something else, mm
+constexpr double kCentreSlack = 0.5;
+
+void check_cartilage(const TetMesh& mesh, const char* what) {
+  if (mesh.n_tets() == 0) fail(ErrorCode::bad_mesh, what, " has no tetrahedra");
+  if (mesh.facet_tags.size() != static_cast<std::size_t>(mesh.facets.rows())) {
+    fail(ErrorCode::bad_mesh, what, " has ", mesh.facets.rows(), " boundary facets and ",
+         mesh.facet_tags.size(), " tags");
+  }
+  if (mesh.mid_nodes.rows() != 0) {
+    fail(ErrorCode::bad_mesh, what, " has ten-node elements; the joint takes four-node ones");
+  }
+  for (const auto& [tag, side] : {std::pair{FacetTag::articular_side, "articular_side"},
+                                  std::pair{FacetTag::bone_side, "bone_side"}}) {
+    if (facets_with(mesh, tag).rows() == 0) {
+      fail(ErrorCode::bad_mesh, what, " has no boundary facet tagged ", side);
+    }
+  }
+}
+
+}  // namespace
+
+void check_model(const JointModel& model) {
+  check_cartilage(model.acetabular_cartilage, "acetabular cartilage");
+  check_cartilage(model.femoral_cartilage, "femoral cartilage");
+  const CartilageMaterial& material = model.material;
+  require(material.youngs_modulus > 0.0, "Young's modulus must be positive, got ",
+          material.youngs_modulus, " MPa");
+  require(-1.0 < material.poissons_ratio && material.poissons_ratio < 0.5,
+          "Poisson's ratio must be in (-1, 0.5), got ", material.poissons_ratio);
+  const double apart = (model.X_IP.p - model.X_IF.p).norm();
+  require(apart <= kCentreSlack,
+          "pelvis and femur frames must both have their origin at the joint ",
+          "centre in the image pose; they are ", apart, " mm apart, limit ", kCentreSlack, " mm");
+  require(model.hip_bone.empty() == model.femur.empty(),
+          "the bony limit needs both bone surfaces, or none");
+  if (!model.femur.empty()) {
+    require_closed_manifold(model.hip_bone, "hip_bone");
+    require_closed_manifold(model.femur, "femur");
+  }
+}
+
+Triangles facets_with(const TetMesh& mesh, FacetTag tag) {
+  const auto count = std::count(mesh.facet_tags.begin(), mesh.facet_tags.end(), tag);
+  Triangles chosen(count, 3);
+  Index row = 0;
+  for (Index f = 0; f < mesh.facets.rows(); ++f) {
+    if (mesh.facet_tags[static_cast<std::size_t>(f)] == tag) chosen.row(row++) = mesh.facets.row(f);
+  }
+  return chosen;
+}
+
+Vec3 socket_axis(const JointModel& model) {
+  const TriMesh articular{model.acetabular_cartilage.points,
+                          facets_with(model.acetabular_cartilage, FacetTag::articular_side)};
+  return (triangle_normals(articular).transpose() * triangle_areas(articular)).normalized();
+}
+
+ClockFace socket_clock(const JointModel& model) {
+  return make_clock_face(model.X_IP.p, socket_axis(model), model.X_IP.R.col(1),
+                         model.X_IP.R.col(0));
+}
+
+}  // namespace coxa::joint
