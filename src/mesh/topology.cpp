@@ -1,5 +1,7 @@
 #include <coxa/mesh/topology.h>
 
+#include "surface_parts.h"
+
 #include <coxa/core/error.h>
 
 #include <algorithm>
@@ -36,12 +38,6 @@ std::string place(const TriMesh& mesh, Index v) {
   return join_text("vertex ", v, " at (", p[0], ", ", p[1], ", ", p[2], ") mm");
 }
 
-bool runs_forward(const TriMesh& mesh, Index t, Index a, Index b) {
-  for (int k = 0; k < 3; ++k)
-    if (mesh.triangles(t, k) == a && mesh.triangles(t, (k + 1) % 3) == b) return true;
-  return false;
-}
-
 std::string edge_fault(const TriMesh& mesh, const MeshEdges& edges) {
   for (Index e = 0; e < edges.vertices.rows(); ++e) {
     const Index a = edges.vertices(e, 0), b = edges.vertices(e, 1);
@@ -53,7 +49,7 @@ std::string edge_fault(const TriMesh& mesh, const MeshEdges& edges) {
     if (around.size() > 2)
       return join_text(around.size(), " triangles share the edge from ", place(mesh, a), " to ",
                        place(mesh, b));
-    if (runs_forward(mesh, around[0], a, b) == runs_forward(mesh, around[1], a, b))
+    if (runs_along(mesh, around[0], a, b) == runs_along(mesh, around[1], a, b))
       return join_text("the two triangles at the edge from ", place(mesh, a), " to ",
                        place(mesh, b), " are oriented against each other");
   }
