@@ -3,9 +3,11 @@
 #include <coxa/core/parallel.h>
 #include <coxa/fem/elastic_force.h>
 
-#include <array>
+#include <algorithm>
 #include <memory>
 #include <vector>
+
+#include "scatter.h"
 
 namespace coxa::fem {
 
@@ -20,7 +22,14 @@ class ElementAssembly {
   int n_points() const { return n_points_; }
   /// Reference volume of integration point q of element e.
   double weight(Index e, int q) const { return weight_[point(e, q)]; }
-  std::vector<std::pair<Index, Index>> pattern() const;
+  int n_nodes() const { return n_nodes_; }
+  Index particle(Index e, int a) const { return scatter_.particle(corner(e, a)); }
+  /// dN_a/dX at integration point q of element e, material axes, 1/mm.
+  const Vec3& shape_gradient(Index e, int q, int a) const {
+    return shape_gradient_[point(e, q) * static_cast<std::size_t>(n_nodes_) +
+                           static_cast<std::size_t>(a)];
+  }
+  std::vector<std::pair<Index, Index>> pattern() const { return scatter_.pattern(); }
   void set_offsets(const Points& offset);
   Points node_positions(const VecX& x) const;
 
@@ -29,7 +38,7 @@ class ElementAssembly {
     Mat3 F = Mat3::Zero();
     for (int a = 0; a < n_nodes_; ++a) {
       const std::size_t k = corner(e, a);
-      Vec3 position = x.segment<3>(3 * Eigen::Index{particle_[k]});
+      Vec3 position = x.segment<3>(3 * Eigen::Index{scatter_.particle(k)});
       if (moving) position += offset_.row(node_[k]).transpose();
       F += position * shape_gradient(e, q, a).transpose();
     }
@@ -47,21 +56,20 @@ class ElementAssembly {
         for (int a = 0; a < n_nodes_; ++a) part[corner(e, a)] -= P * shape_gradient(e, q, a);
       }
     });
-    gather_force(part.get(), force);
+    scatter_.gather_force(part.get(), force);
   }
 
   /// Adds factor * weight * r_a : C : r_b to each pair of nodes, C = tangent(e, q).
   template <class TangentAt>
   void add_jacobian(const TangentAt& tangent, double factor, solve::BlockMatrix& A) const {
-    const auto part = std::make_unique_for_overwrite<Mat3[]>(static_cast<std::size_t>(n_elements_) *
-                                                             static_cast<std::size_t>(n_blocks()));
+    const auto part = std::make_unique_for_overwrite<Mat3[]>(scatter_.n_blocks());
     parallel_for(n_elements_, [&](Index e) {
-      Mat3* blocks = &part[static_cast<std::size_t>(e) * static_cast<std::size_t>(n_blocks())];
-      for (int k = 0; k < n_blocks(); ++k) blocks[k].setZero();
+      Mat3* blocks = &part[scatter_.block(e)];
+      std::fill_n(blocks, n_nodes_ * (n_nodes_ + 1) / 2, Mat3::Zero());
       for (int q = 0; q < n_points_; ++q)
         add_point_blocks(e, q, Mat9(factor * weight(e, q) * tangent(e, q)), blocks);
     });
-    gather_blocks(part.get(), A);
+    scatter_.gather_blocks(part.get(), A);
   }
 
   /// Sum of weight * density(e, q).
@@ -86,33 +94,15 @@ class ElementAssembly {
     return static_cast<std::size_t>(e) * static_cast<std::size_t>(n_nodes_) +
            static_cast<std::size_t>(a);
   }
-  const Vec3& shape_gradient(Index e, int q, int a) const {
-    return shape_gradient_[point(e, q) * static_cast<std::size_t>(n_nodes_) +
-                           static_cast<std::size_t>(a)];
-  }
-  int n_blocks() const { return n_nodes_ * (n_nodes_ + 1) / 2; }
-  /// Place of block (a, b), a <= b, among the blocks of an element.
-  int block_number(int a, int b) const { return a * n_nodes_ - a * (a - 1) / 2 + b - a; }
-
-  void find_rows(Index n_particles);
-  void find_neighbours();
   void add_point_blocks(Index e, int q, const Mat9& C, Mat3* blocks) const;
-  void gather_force(const Vec3* part, VecX& force) const;
-  void gather_blocks(const Mat3* part, solve::BlockMatrix& A) const;
 
   Index n_elements_ = 0;
   int n_nodes_ = 4, n_points_ = 1;
-  std::vector<Index> node_, particle_;  // M × n_nodes
-  std::vector<double> weight_;          // M × n_points
-  std::vector<Vec3> shape_gradient_;    // M × n_points × n_nodes, material axes, 1/mm
-  Points offset_;                       // N × 3
-
-  std::vector<Index> rows_;              // the particles of this mesh, ascending
-  std::vector<std::int64_t> use_start_;  // per row, where its uses begin
-  std::vector<std::int64_t> uses_;       // corners e * n_nodes + a of each row, ascending
-  std::vector<std::int64_t> neighbour_start_;
-  std::vector<Index> neighbours_;  // per row, the particles it shares an element with, ascending
-  std::vector<Index> entry_;       // per corner and other node, its place in the row's neighbours
+  std::vector<Index> node_;           // M × n_nodes
+  std::vector<double> weight_;        // M × n_points
+  std::vector<Vec3> shape_gradient_;  // M × n_points × n_nodes, material axes, 1/mm
+  Points offset_;                     // N × 3
+  Scatter scatter_;                   // elements to particles
 };
 
 }  // namespace coxa::fem
