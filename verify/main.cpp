@@ -1,0 +1,77 @@
+// Physics against closed forms and published figures: one line a figure, exit code 1 when one is
+// outside. Usage: coxa_verify [letters], for example "coxa_verify a h"; without letters, every
+// case.
+#include <coxa/core/error.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <string>
+
+#include "cases.h"
+
+namespace {
+
+struct Case {
+  char letter;
+  const char* title;
+  std::function<coxa::verify::Rows()> run;
+};
+
+const std::vector<Case>& cases() {
+  using namespace coxa::verify;
+  static const std::vector<Case> all{
+      {'a', "cantilever under an end load (elastica)", elastica},
+      {'b', "cantilever under its own weight", self_weight},
+      {'c', "St-Venant-Kirchhoff curves and collapse", st_venant_kirchhoff},
+      {'d', "patch test on an irregular mesh", patch},
+      {'f', "rigid sphere on a half space (Hertz)", hertz},
+      {'g', "rigid sphere on a bonded compressible layer", compressible_layer},
+      {'h', "rigid sphere on a bonded nearly incompressible layer", incompressible_layer},
+      {'l', "Cook's membrane", cook},
+      {'n', "energy and frequency of free vibration", energy}};
+  return all;
+}
+
+/// Prints the rows of one case; returns how many are outside.
+int report(const coxa::verify::Rows& rows) {
+  int outside = 0;
+  for (const auto& row : rows) {
+    const double scale = row.reference != 0.0 ? std::abs(row.reference) : 1.0;
+    const double error = std::abs(row.ours - row.reference) / scale;
+    const bool inside = error <= row.tolerance;
+    outside += inside ? 0 : 1;
+    std::printf("  %-58s %14.8g %14.8g %9.2e %9.1e  %s\n", row.name.c_str(), row.reference,
+                row.ours, error, row.tolerance, inside ? "pass" : "FAIL");
+  }
+  return outside;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string chosen;
+  for (int k = 1; k < argc; ++k) chosen += argv[k];
+  std::printf("%-60s %14s %14s %9s %9s\n", "case", "reference", "ours", "error", "tolerance");
+  int outside = 0;
+  std::size_t figures = 0;
+  for (const Case& one : cases()) {
+    if (!chosen.empty() && chosen.find(one.letter) == std::string::npos) continue;
+    std::printf("(%c) %s\n", one.letter, one.title);
+    std::fflush(stdout);
+    const auto start = std::chrono::steady_clock::now();
+    try {
+      const auto rows = one.run();
+      outside += report(rows);
+      figures += rows.size();
+    } catch (const coxa::Error& error) {
+      std::printf("  FAIL: %s\n", error.what());
+      ++outside;
+    }
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    std::printf("  %.1f s\n", seconds.count());
+  }
+  std::printf("%zu figures, %d outside\n", figures, outside);
+  return outside == 0 ? 0 : 1;
+}
