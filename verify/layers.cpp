@@ -89,10 +89,10 @@ Indentation layer(double E, double nu, double radius, double peak, double end, i
 Rows hertz() {
   const double E = 12.0, nu = 0.42, R = 25.0, d = 0.1, reduced = E / (1.0 - nu * nu);
   // the half space ends 60 contact radii away; cells grow from the contact outwards and downwards
-  std::vector<double> z = graded(95.0, 26, 1.2);
+  std::vector<double> z = graded(80.0, 20, 1.28);
   std::reverse(z.begin(), z.end());
-  for (double& value : z) value = 95.0 - value;
-  const Answer ours = press({E, nu, R, d, 0.6, graded(95.0, 32, 1.16), z});
+  for (double& value : z) value = 80.0 - value;
+  const Answer ours = press({E, nu, R, d, 0.6, graded(80.0, 24, 1.22), z});
   const double a = std::sqrt(R * d);
   return {{"force, N", 4.0 / 3.0 * reduced * a * d, ours.force, 0.03},
           {"peak pressure, MPa", 2.0 * reduced * a / (kPi * R), ours.peak, 0.03},
