@@ -1,6 +1,7 @@
 #include <coxa/medial/medial_sheet.h>
 
 #include <coxa/medial/face_pair.h>
+#include "cell_sizing.h"
 #include "sheet_grid.h"
 
 #include <coxa/core/error.h>
@@ -15,7 +16,9 @@ namespace {
 
 constexpr double kSplit = 4.0 / 3.0;     // edges longer than this times the wanted length are split
 constexpr double kCollapse = 4.0 / 5.0;  // and shorter ones collapsed (Botsch and Kobbelt 2004)
-constexpr double kRelax = 0.8;           // share of the step to the weighted centre
+constexpr double kCornerShare = 0.1;     // of a cell: height from which a border bend is a corner
+constexpr double kSmallestCorner = 0.06;  // mm
+constexpr double kRelax = 0.8;            // share of the step to the weighted centre
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -25,6 +28,10 @@ void check(const MedialOptions& o) {
   require(o.largest_cell > 0 && o.largest_cell >= o.smallest_cell,
           "largest_cell must be > 0 mm and not below smallest_cell, got ", o.largest_cell);
   require(o.gradation > 0, "gradation must be > 0, got ", o.gradation);
+  require(o.knife_edge_rounding >= 0, "knife_edge_rounding must be >= 0 mm, got ",
+          o.knife_edge_rounding);
+  require(o.blunt_angle > 0, "blunt_angle must be > 0 rad, got ", o.blunt_angle);
+  require(o.chord_error > 0, "chord_error must be > 0 mm, got ", o.chord_error);
   require(o.max_cells >= 8, "max_cells must be >= 8, got ", o.max_cells);
   require(o.iterations >= 1, "iterations must be >= 1, got ", o.iterations);
 }
@@ -48,70 +55,17 @@ void centre(SheetGrid& grid, const FacePair& faces) {
   }
 }
 
-struct CellSizing {
-  double per_thickness, smallest, largest, gradation;
-};
-
-// wanted edge length from the local thickness, growing no faster than the gradation
-void update_sizes(SheetGrid& grid, const FacePair& faces, const CellSizing& sizing) {
+// pins border nodes that a chord between the border half a cell before and after would miss by far
+void pin_corners(SheetGrid& grid, const FacePair& faces) {
   for (Index v = 0; v < grid.n_nodes(); ++v) {
-    if (!grid.alive(v)) continue;
-    const BallFeet f = grid.rim[at(v)] ? faces.rim_feet(grid.x[at(v)]) : faces.feet(grid.x[at(v)]);
-    const double wanted = sizing.per_thickness * (f.first - f.second).norm();
-    grid.size[at(v)] = std::clamp(wanted, sizing.smallest, sizing.largest);
+    if (!grid.rim[at(v)]) continue;
+    const auto [before, after] = faces.rim().around(grid.x[at(v)], 0.5 * grid.size[at(v)]);
+    const Vec3 chord = after - before;
+    if (chord.norm() <= 0.0) continue;
+    const Vec3 offset = grid.x[at(v)] - before;
+    const double height = (offset - chord * (chord.dot(offset) / chord.squaredNorm())).norm();
+    grid.pinned[at(v)] = height > std::max(kCornerShare * grid.size[at(v)], kSmallestCorner);
   }
-  const auto edges = grid.edges();
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (const auto& [a, b] : edges) {
-      const double reach = sizing.gradation * (grid.x[at(a)] - grid.x[at(b)]).norm();
-      for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}}) {
-        if (grid.size[at(to)] > grid.size[at(from)] + reach + 1e-9) {
-          grid.size[at(to)] = grid.size[at(from)] + reach;
-          changed = true;
-        }
-      }
-    }
-  }
-}
-
-double expected_cells(const SheetGrid& grid) {
-  double sum = 0.0;
-  for (const auto& c : grid.cells()) {
-    const Vec3 &a = grid.x[at(c[0])], &b = grid.x[at(c[1])], &d = grid.x[at(c[2])];
-    const double area = 0.5 * (b - a).cross(d - a).norm();
-    const double edge = (grid.size[at(c[0])] + grid.size[at(c[1])] + grid.size[at(c[2])]) / 3.0;
-    sum += area / (std::sqrt(3.0) / 4.0 * edge * edge);
-  }
-  return sum;
-}
-
-// enlarges the smallest cell, then all cells, until the number of cells is met
-CellSizing sizing_for(SheetGrid& grid, const FacePair& faces, const MedialOptions& o) {
-  CellSizing sizing{o.cell_per_thickness, std::max(o.smallest_cell, 1e-3 * o.largest_cell),
-                    o.largest_cell, o.gradation};
-  update_sizes(grid, faces, sizing);
-  std::vector<double> thickness;
-  for (Index v = 0; v < grid.n_nodes(); ++v) {
-    if (!grid.alive(v) || grid.rim[at(v)]) continue;
-    const BallFeet f = faces.feet(grid.x[at(v)]);
-    thickness.push_back((f.first - f.second).norm());
-  }
-  std::sort(thickness.begin(), thickness.end());
-  const double typical =
-      thickness.empty() ? 1.0 : o.cell_per_thickness * thickness[thickness.size() / 2];
-  // first the floor up to the typical size, then everything in proportion
-  for (int step = 0; step < 200 && expected_cells(grid) > o.max_cells; ++step) {
-    if (sizing.smallest < typical) {
-      sizing.smallest = std::min(typical, std::max(1.04 * sizing.smallest, 0.25 * typical));
-    } else {
-      sizing.smallest *= 1.04;
-      sizing.per_thickness *= 1.04;
-      sizing.largest *= 1.04;
-    }
-    update_sizes(grid, faces, sizing);
-  }
-  return sizing;
 }
 
 double relative_length(const SheetGrid& grid, Index a, Index b) {
@@ -141,8 +95,9 @@ void split_long_edges(SheetGrid& grid, const FacePair& faces) {
 void collapse_short_edges(SheetGrid& grid, const FacePair& faces) {
   for (auto [a, b] : edges_by_length(grid, false)) {
     if (relative_length(grid, a, b) >= kCollapse || !grid.has_edge(a, b)) continue;
-    if (grid.rim[at(b)] && !grid.rim[at(a)]) std::swap(a, b);
-    const bool both = grid.rim[at(a)] == grid.rim[at(b)];
+    if (grid.pinned[at(a)] && grid.pinned[at(b)]) continue;
+    if (grid.rim[at(b)] > grid.rim[at(a)] || grid.pinned[at(b)]) std::swap(a, b);
+    const bool both = grid.rim[at(a)] == grid.rim[at(b)] && !grid.pinned[at(a)];
     Vec3 place = both ? Vec3(0.5 * (grid.x[at(a)] + grid.x[at(b)])) : grid.x[at(a)];
     if (both) place = grid.rim[at(a)] ? faces.on_rim(place) : faces.centred(place);
     grid.collapse(a, b, place, kSplit);
@@ -180,7 +135,7 @@ void flip_edges(SheetGrid& grid, bool by_valence) {
 // smoothing forces: to the weighted centre of the cells around, along the sheet only
 void smooth(SheetGrid& grid, const FacePair& faces) {
   for (Index v = 0; v < grid.n_nodes(); ++v) {
-    if (!grid.alive(v)) continue;
+    if (!grid.alive(v) || grid.pinned[at(v)]) continue;
     Vec3 sum = Vec3::Zero();
     double weights = 0.0;
     if (grid.rim[at(v)]) {
@@ -218,6 +173,7 @@ MedialSheet to_sheet(SheetGrid& grid, const FacePair& faces) {
   sheet.second_feet.resize(n, 3);
   sheet.radii.resize(n);
   sheet.rim = grid.rim;
+  sheet.corners = grid.pinned;
   for (Index v = 0; v < n; ++v) {
     const BallFeet f = grid.rim[at(v)] ? faces.rim_feet(grid.x[at(v)]) : faces.feet(grid.x[at(v)]);
     sheet.nodes.row(v) = grid.x[at(v)];
@@ -246,11 +202,12 @@ MedialSheet fit_medial_sheet(const TriMesh& surface, const SurfaceSides& sides,
   const FacePair faces(surface, sides);
   SheetGrid grid = first_grid(faces.first_face());
   centre(grid, faces);
-  const CellSizing sizing = sizing_for(grid, faces, options);
+  const CellSizing sizing = sizing_for(grid, size_basis(grid, faces, options), options);
+  pin_corners(grid, faces);
   for (int k = 0; k < options.iterations; ++k) {
     monitor.check_cancelled();
     monitor.progress("medial grid", static_cast<double>(k) / options.iterations);
-    if (k > 0) update_sizes(grid, faces, sizing);
+    if (k > 0) update_sizes(grid, size_basis(grid, faces, options), sizing);
     const bool shaping = k < options.iterations - 3;
     if (shaping) {
       split_long_edges(grid, faces);

@@ -25,7 +25,11 @@ constexpr double kFold = 0.3;
 }  // namespace
 
 SheetGrid::SheetGrid(std::vector<Vec3> nodes, const std::vector<Cell>& cells)
-    : x(std::move(nodes)), size(x.size(), 1.0), rim(x.size(), 0), around_(x.size()) {
+    : x(std::move(nodes)),
+      size(x.size(), 1.0),
+      rim(x.size(), 0),
+      pinned(x.size(), 0),
+      around_(x.size()) {
   for (const Cell& c : cells) add_cell(c);
   for (const auto& [a, b] : edges()) {
     if (on_border(a, b)) rim[at(a)] = rim[at(b)] = 1;
@@ -112,6 +116,7 @@ Index SheetGrid::split(Index a, Index b, const Vec3& place) {
   x.push_back(place);
   size.push_back(0.5 * (size[at(a)] + size[at(b)]));
   rim.push_back(pair.size() == 1 ? 1 : 0);
+  pinned.push_back(0);
   around_.emplace_back();
   for (const Index c : pair) {
     Cell one = cell(c), two = one;
@@ -166,6 +171,7 @@ bool SheetGrid::collapse(Index a, Index b, const Vec3& place, double limit) {
   }
   x[at(a)] = place;
   rim[at(a)] = rim[at(a)] || rim[at(b)];
+  pinned[at(a)] = pinned[at(a)] || pinned[at(b)];
   return true;
 }
 
@@ -204,12 +210,14 @@ std::vector<Index> SheetGrid::compact() {
     x[at(count)] = x[at(v)];
     size[at(count)] = size[at(v)];
     rim[at(count)] = rim[at(v)];
+    pinned[at(count)] = pinned[at(v)];
     ++count;
   }
   std::vector<Cell> living = cells();
   x.resize(at(count));
   size.resize(at(count));
   rim.resize(at(count));
+  pinned.resize(at(count));
   around_.assign(at(count), {});
   cells_.clear();
   alive_.clear();

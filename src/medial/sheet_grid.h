@@ -21,6 +21,7 @@ class SheetGrid {
   std::vector<Vec3> x;       ///< positions, mm
   std::vector<double> size;  ///< wanted edge length, mm
   std::vector<char> rim;     ///< 1 on the border
+  std::vector<char> pinned;  ///< 1 at corners of the border, which keep their place
 
   Index n_nodes() const { return static_cast<Index>(x.size()); }
   bool alive(Index node) const { return !around(node).empty(); }

@@ -134,11 +134,29 @@ Index plan_columns(const MedialSheet& sheet, int layers, Plan& plan) {
   return reduced;
 }
 
-NodeKind kind_of(bool rim, int layers, int level) {
-  if (layers == 0) return NodeKind::rim_edge;
-  if (level == 0) return rim ? NodeKind::first_border : NodeKind::first_face;
-  if (level == layers) return rim ? NodeKind::second_border : NodeKind::second_face;
+NodeKind kind_of(bool rim, bool corner, int layers, int level) {
+  if (layers == 0) return corner ? NodeKind::rim_corner : NodeKind::rim_edge;
+  if (level == 0) {
+    return corner ? NodeKind::first_corner : rim ? NodeKind::first_border : NodeKind::first_face;
+  }
+  if (level == layers) {
+    return corner ? NodeKind::second_corner : rim ? NodeKind::second_border : NodeKind::second_face;
+  }
   return rim ? NodeKind::rim_band : NodeKind::inside;
+}
+
+// corners start, and stay, where nodes that slide would start
+Vec3 start_of(NodeKind kind, const Vec3& p, const SlideGuide& guide) {
+  switch (kind) {
+    case NodeKind::rim_corner:
+      return guide.place(NodeKind::rim_edge, p);
+    case NodeKind::first_corner:
+      return guide.place(NodeKind::first_border, p);
+    case NodeKind::second_corner:
+      return guide.place(NodeKind::second_border, p);
+    default:
+      return guide.place(kind, p);
+  }
 }
 
 void add_nodes(const MedialSheet& sheet, const SlideGuide& guide, int layers, const Plan& plan,
@@ -148,13 +166,13 @@ void add_nodes(const MedialSheet& sheet, const SlideGuide& guide, int layers, co
     const int n = plan.columns[i].layers;
     for (int level = 0; level <= n; ++level) {
       const double share = n == 0 ? 0.5 : static_cast<double>(level) / n;
-      const NodeKind kind = kind_of(sheet.rim[i] != 0, n, level);
+      const NodeKind kind = kind_of(sheet.rim[i] != 0, sheet.corners[i] != 0, n, level);
       Vec3 p = (1.0 - share) * sheet.first_feet.row(node).transpose() +
                share * sheet.second_feet.row(node).transpose();
       if (n == 0) p = sheet.nodes.row(node);
       // full columns away from the rim: every other level forward, the rest backward
       if (n == layers && plan.ring[i] > 0) p += (level % 2 == 0 ? 1.0 : -1.0) * plan.shift[i];
-      grid.x.push_back(guide.place(kind, p));
+      grid.x.push_back(start_of(kind, p, guide));
       grid.kinds.push_back(kind);
       grid.levels.push_back(share * layers);
     }

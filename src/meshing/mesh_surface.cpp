@@ -1,16 +1,16 @@
 #include <coxa/meshing/mesh_surface.h>
 
-#include "element_shape.h"
+#include "crease_snapping.h"
 #include "extrude.h"
 #include "node_smoothing.h"
 #include "tet_boundary.h"
+#include "worst_elements.h"
 
 #include <coxa/core/error.h>
 #include <coxa/medial/medial_sheet.h>
 #include <coxa/mesh/topology.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace coxa::meshing {
 namespace {
@@ -18,8 +18,6 @@ namespace {
 // below this share of facing area a body is no sheet
 constexpr double kSheet = 0.7;
 constexpr int kSizeTries = 6;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void check(const MeshingOptions& o) {
   require(!o.layers || (*o.layers >= 1 && *o.layers <= 8), "layers must be 1 to 8, got ",
@@ -31,66 +29,65 @@ void check(const MeshingOptions& o) {
   require(o.improvement_rounds >= 0, "improvement_rounds must be >= 0, got ", o.improvement_rounds);
 }
 
-void update_figures(const TetGrid& grid, MeshingReport& report) {
-  std::vector<double> aspects;
-  double smallest = kPi, largest = 0.0, sum = 0.0;
-  for (const Tet& t : grid.tets) {
-    const Vec3 &a = grid.x[at(t[0])], &b = grid.x[at(t[1])], &c = grid.x[at(t[2])],
-               &d = grid.x[at(t[3])];
-    aspects.push_back(aspect_ratio(a, b, c, d));
-    sum += aspects.back();
-    const DihedralRange range = dihedral_range(a, b, c, d);
-    smallest = std::min(smallest, range.smallest);
-    largest = std::max(largest, range.largest);
-  }
-  std::sort(aspects.begin(), aspects.end());
-  report.aspect_mean = sum / static_cast<double>(aspects.size());
-  report.aspect_p05 = aspects[aspects.size() / 20];
-  report.aspect_min = aspects.front();
-  report.dihedral_min = smallest;
-  report.dihedral_max = largest;
-}
-
 void improve(TetGrid& grid, const SlideGuide& guide, int rounds, const Monitor& monitor) {
+  constexpr int kSnapRound = 2;   // bends of the surface are met once nodes are spread evenly
   constexpr int kMeanRounds = 5;  // first the average, then the worst
   for (int k = 0; k < rounds; ++k) {
     monitor.check_cancelled();
     monitor.progress("improve", static_cast<double>(k) / rounds);
+    if (k == kSnapRound) snap_to_creases(grid, guide);
     update_positions(grid, guide, k < kMeanRounds ? 1.0 : 3.0);
   }
+  for (int k = 0; k < rounds && raise_worst(grid, guide) > 0; ++k) monitor.check_cancelled();
+}
+
+// sheet and extrusion of as many elements as allowed, or of as many as the thickness asks for
+Extrusion extrude_within(const TriMesh& surface, const medial::SurfaceSides& sides,
+                         const SlideGuide& guide, const MeshingOptions& options,
+                         const Monitor& monitor) {
+  constexpr double kWellFilled =
+      0.94;  // share of the elements allowed from which it is not tried again
+  const int layers = options.layers.value_or(1);
+  medial::MedialOptions sheet_options{.cell_per_thickness = options.cell_per_thickness / layers};
+  sheet_options.knife_edge_rounding = options.rim_rounding;
+  sheet_options.max_cells = std::max(8, options.max_tets / (3 * layers));
+  std::optional<Extrusion> best;
+  for (int attempt = 0; attempt < kSizeTries; ++attempt) {
+    const auto sheet = medial::fit_medial_sheet(surface, sides, sheet_options, monitor);
+    Extrusion made = extrude(sheet, guide, layers);
+    const double filled = static_cast<double>(made.grid.tets.size()) / options.max_tets;
+    if (filled <= 1.0 && (!best || best->grid.tets.size() < made.grid.tets.size())) {
+      best = std::move(made);
+    }
+    const bool limited = sheet.cells.rows() > sheet_options.max_cells / 2;
+    if (filled <= 1.0 && (filled >= kWellFilled || !limited || attempt >= 1)) break;
+    sheet_options.max_cells =
+        std::max(8, static_cast<int>(0.97 / filled * sheet_options.max_cells));
+  }
+  if (!best) {
+    fail(ErrorCode::below_quality, "no mesh of at most ", options.max_tets,
+         " tetrahedra was found; allow more of them");
+  }
+  return std::move(*best);
 }
 
 MeshingResult mesh_sheet(const TriMesh& surface, const medial::SurfaceSides& sides,
                          const MeshingOptions& options, const Monitor& monitor) {
-  const int layers = options.layers.value_or(1);
   const medial::FacePair faces(surface, sides);
   const SlideGuide guide(surface, sides, faces, options.rim_rounding);
-  medial::MedialOptions sheet_options{.cell_per_thickness = options.cell_per_thickness / layers};
-  sheet_options.max_cells = std::max(8, options.max_tets / (3 * layers));
-  for (int attempt = 0; attempt < kSizeTries; ++attempt) {
-    const auto sheet = medial::fit_medial_sheet(surface, sides, sheet_options,
-                                                part_of(monitor, "medial grid", 0.0, 0.5));
-    Extrusion made = extrude(sheet, guide, layers);
-    const int n_tets = static_cast<int>(made.grid.tets.size());
-    if (n_tets > options.max_tets) {
-      const double share = 0.95 * options.max_tets / n_tets;
-      sheet_options.max_cells = std::max(8, static_cast<int>(share * sheet_options.max_cells));
-      continue;
-    }
-    const Index inverted = untangle(made.grid, guide);
-    if (inverted > 0) fail(ErrorCode::below_quality, inverted, " elements stay inverted");
-    improve(made.grid, guide, options.improvement_rounds, part_of(monitor, "improve", 0.5, 1.0));
-    MeshingResult result;
-    result.report.method = Method::medial;
-    result.report.sheetness = sides.sheetness;
-    result.report.layers = layers;
-    result.report.rim_rounding = guide.largest_rounding();
-    update_figures(made.grid, result.report);
-    result.mesh = to_tet_mesh(made.grid);
-    return result;
-  }
-  fail(ErrorCode::below_quality, "no mesh of at most ", options.max_tets,
-       " tetrahedra was found; allow more of them");
+  Extrusion made =
+      extrude_within(surface, sides, guide, options, part_of(monitor, "medial grid", 0.0, 0.6));
+  const Index inverted = untangle(made.grid, guide);
+  if (inverted > 0) fail(ErrorCode::below_quality, inverted, " elements stay inverted");
+  improve(made.grid, guide, options.improvement_rounds, part_of(monitor, "improve", 0.6, 1.0));
+  MeshingResult result;
+  result.report.method = Method::medial;
+  result.report.sheetness = sides.sheetness;
+  result.report.layers = options.layers.value_or(1);
+  result.report.rim_rounding = guide.largest_rounding();
+  result.mesh = to_tet_mesh(made.grid);
+  result.report.quality = tet_quality(result.mesh.points, result.mesh.tets);
+  return result;
 }
 
 }  // namespace

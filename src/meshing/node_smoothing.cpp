@@ -96,7 +96,7 @@ Vec3 newton_step(const Model& m, const Directions& D) {
 
 bool move_node(TetGrid& grid, const SlideGuide& guide, Index v, const Aim& aim, Star& star) {
   const NodeKind kind = grid.kinds[at(v)];
-  if (kind == NodeKind::fixed || grid.around[at(v)].empty()) return false;
+  if (is_fixed(kind) || grid.around[at(v)].empty()) return false;
   star.gather(grid, v);
   const Vec3 p = grid.x[at(v)];
   const Model m = model_at(star, p, aim);

@@ -1,5 +1,8 @@
 #include "slide_guide.h"
 
+#include <coxa/mesh/topology.h>
+#include <coxa/mesh/vertex_normals.h>
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -12,48 +15,12 @@ namespace {
 using medial::BorderCurve;
 using medial::FacePair;
 
-// unit vectors in the face, at right angles to its border edges and pointing into it, with the
-// place
-struct InwardField {
-  std::vector<Vec3> places, directions;
+constexpr double kLeastRounding = 0.05;        // mm
+constexpr double kBluntAngle = radians(17.0);  // wedges of this angle need no rounding
 
-  explicit InwardField(const TriMesh& face) {
-    std::map<std::pair<Index, Index>, int> uses;
-    for (Index t = 0; t < face.n_triangles(); ++t) {
-      for (int k = 0; k < 3; ++k) {
-        const Index a = face.triangles(t, k), b = face.triangles(t, (k + 1) % 3);
-        ++uses[{std::min(a, b), std::max(a, b)}];
-      }
-    }
-    for (Index t = 0; t < face.n_triangles(); ++t) {
-      for (int k = 0; k < 3; ++k) {
-        const Index ia = face.triangles(t, k), ib = face.triangles(t, (k + 1) % 3);
-        if (uses[{std::min(ia, ib), std::max(ia, ib)}] != 1) continue;
-        const Vec3 a = face.points.row(ia), b = face.points.row(ib),
-                   c = face.points.row(face.triangles(t, (k + 2) % 3));
-        const Vec3 along = (b - a).normalized();
-        const Vec3 inward = (c - a) - along * along.dot(c - a);
-        if (inward.norm() <= 0.0) continue;
-        places.push_back(0.5 * (a + b));
-        directions.push_back(inward.normalized());
-      }
-    }
-  }
-
-  // mean direction of the border edges near p, nearer ones counting more
-  Vec3 mean(const Vec3& p, double reach) const {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const double d = (places[i] - p).squaredNorm() / (reach * reach);
-      if (d < 20.0) sum += std::exp(-d) * directions[i];
-    }
-    return sum;
-  }
-};
-
-BorderCurve moved_inwards(const FacePair& faces, double rounding) {
-  constexpr double kReach = 1.5;  // mm: the inward direction is a mean over this distance
-  const InwardField first(faces.first_face()), second(faces.second_face());
+// the rim, moved inwards just enough to make the elements beside a knife edge blunt
+BorderCurve moved_inwards(const FacePair& faces, double limit) {
+  constexpr double kReach = 1.0;  // mm of movement for an edge of no angle at all, before the limit
   BorderCurve curve;
   for (const auto& loop : faces.rim().loops) {
     auto& made = curve.loops.emplace_back();
@@ -61,10 +28,37 @@ BorderCurve moved_inwards(const FacePair& faces, double rounding) {
       // a point midway too: long edges bend with their neighbours
       const Vec3 middle = 0.5 * (loop[i] + loop[(i + 1) % loop.size()]);
       for (const Vec3& p : {loop[i], middle}) {
-        const Vec3 inward = first.mean(p, kReach) + second.mean(p, kReach);
-        made.push_back(inward.norm() > 0.0 ? Vec3(p + rounding * inward.normalized()) : p);
+        const medial::RimWedge wedge = faces.rim_wedge(p);
+        const double wanted = kReach * (1.0 - wedge.angle / kBluntAngle);
+        made.push_back(p +
+                       std::clamp(wanted, std::min(kLeastRounding, limit), limit) * wedge.inward);
       }
     }
+  }
+  return curve;
+}
+
+// edges of a face bent far more than its usual edges, each as a loop of two points
+BorderCurve creases_of(const TriMesh& face) {
+  constexpr double kLeastBend = radians(15.0);
+  constexpr double kUnusual = 3.0;  // times the median bend
+  const MeshEdges edges = mesh_edges(face);
+  const Points normals = triangle_normals(face);
+  std::vector<double> bends;
+  for (Index e = 0; e < edges.triangles.size(); ++e) {
+    const auto pair = edges.triangles[e];
+    const double cosine = pair.size() == 2 ? normals.row(pair[0]).dot(normals.row(pair[1])) : 1.0;
+    bends.push_back(std::acos(std::clamp(cosine, -1.0, 1.0)));
+  }
+  std::vector<double> sorted = bends;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                   sorted.end());
+  const double limit = std::max(kLeastBend, kUnusual * sorted[sorted.size() / 2]);
+  BorderCurve curve;
+  for (std::size_t e = 0; e < bends.size(); ++e) {
+    if (bends[e] <= limit) continue;
+    const auto row = edges.vertices.row(static_cast<Eigen::Index>(e));
+    curve.loops.push_back({face.points.row(row[0]), face.points.row(row[1])});
   }
   return curve;
 }
@@ -89,7 +83,10 @@ Vec3 triangle_normal(const TriangleTree& tree, Index t) {
 
 SlideGuide::SlideGuide(const TriMesh& surface, const medial::SurfaceSides& sides,
                        const FacePair& faces, double rounding)
-    : faces_(faces), rim_edge_(moved_inwards(faces, rounding)) {
+    : faces_(faces),
+      rim_edge_(moved_inwards(faces, rounding)),
+      first_creases_(creases_of(faces.first_face())),
+      second_creases_(creases_of(faces.second_face())) {
   TriMesh band = medial::face_of(surface, sides, medial::SideLabel::rim);
   if (!band.empty()) band_.emplace(band.points, band.triangles);
   for (const auto& loop : rim_edge_.loops) {
@@ -113,11 +110,23 @@ Vec3 SlideGuide::place(NodeKind kind, const Vec3& p) const {
       return faces_.first_border().nearest(p).point;
     case NodeKind::second_border:
       return faces_.second_border().nearest(p).point;
+    case NodeKind::first_crease:
+      return first_creases_.nearest(p).point;
+    case NodeKind::second_crease:
+      return second_creases_.nearest(p).point;
     case NodeKind::inside:
-    case NodeKind::fixed:
+    case NodeKind::first_corner:
+    case NodeKind::second_corner:
+    case NodeKind::rim_corner:
       break;
   }
   return p;
+}
+
+std::optional<Vec3> SlideGuide::nearest_crease(NodeKind face, const Vec3& p) const {
+  const BorderCurve& creases = face == NodeKind::first_face ? first_creases_ : second_creases_;
+  if (creases.loops.empty()) return std::nullopt;
+  return creases.nearest(p).point;
 }
 
 Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> SlideGuide::directions(NodeKind kind,
@@ -140,7 +149,13 @@ Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> SlideGuide::directions(NodeKin
       return faces_.first_border().nearest(p).tangent;
     case NodeKind::second_border:
       return faces_.second_border().nearest(p).tangent;
-    case NodeKind::fixed:
+    case NodeKind::first_crease:
+      return first_creases_.nearest(p).tangent;
+    case NodeKind::second_crease:
+      return second_creases_.nearest(p).tangent;
+    case NodeKind::first_corner:
+    case NodeKind::second_corner:
+    case NodeKind::rim_corner:
       break;
   }
   return Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3>(3, 0);

@@ -20,13 +20,15 @@ class SlideGuide {
   Vec3 place(NodeKind kind, const Vec3& p) const;
   /// Orthonormal directions (columns) in which a node of this kind at p may move, 3, 2, 1 or 0.
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> directions(NodeKind kind, const Vec3& p) const;
+  /// Nearest point on a sharp bend of a face; nullopt where the face has none.
+  std::optional<Vec3> nearest_crease(NodeKind face, const Vec3& p) const;
   /// mm: largest distance between the rim and where it was moved.
   double largest_rounding() const { return largest_rounding_; }
 
  private:
   const medial::FacePair& faces_;
   std::optional<TriangleTree> band_;
-  medial::BorderCurve rim_edge_;
+  medial::BorderCurve rim_edge_, first_creases_, second_creases_;
   double largest_rounding_ = 0.0;
 };
 

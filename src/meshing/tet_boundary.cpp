@@ -43,8 +43,8 @@ FacetTag tag_of(const TetGrid& grid, const std::array<Index, 3>& facet) {
   bool first = false, second = false, band = false;
   for (const Index v : facet) {
     const NodeKind kind = grid.kinds[at(v)];
-    first = first || kind == NodeKind::first_face || kind == NodeKind::first_border;
-    second = second || kind == NodeKind::second_face || kind == NodeKind::second_border;
+    first = first || on_first_face(kind);
+    second = second || on_second_face(kind);
     band = band || kind == NodeKind::rim_band;
   }
   if (band || first == second) return FacetTag::rim;

@@ -18,9 +18,26 @@ enum class NodeKind : std::int8_t {
   rim_band,       ///< on the rim band between the faces
   rim_edge,       ///< on the (rounded) knife edge where both faces meet
   first_border,   ///< on the border between first face and rim band
+  first_crease,   ///< on a sharp bend of the first face
+  second_crease,  ///< on a sharp bend of the second face
   second_border,  ///< on the border between second face and rim band
-  fixed
+  first_corner,   ///< stays: corner of the first face's border
+  second_corner,  ///< stays: corner of the second face's border
+  rim_corner      ///< stays: corner of a knife edge
 };
+
+/// Whether a node belongs to the first face, its border included.
+constexpr bool on_first_face(NodeKind k) {
+  return k == NodeKind::first_face || k == NodeKind::first_border || k == NodeKind::first_crease ||
+         k == NodeKind::first_corner;
+}
+constexpr bool on_second_face(NodeKind k) {
+  return k == NodeKind::second_face || k == NodeKind::second_border ||
+         k == NodeKind::second_crease || k == NodeKind::second_corner;
+}
+constexpr bool is_fixed(NodeKind k) {
+  return k == NodeKind::first_corner || k == NodeKind::second_corner || k == NodeKind::rim_corner;
+}
 
 /// Tetrahedra under edition: positions, where nodes may move, and who is around each node.
 struct TetGrid {

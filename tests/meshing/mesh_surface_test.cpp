@@ -34,7 +34,7 @@ TEST(MeshSurface, FillsAWalledShellWithGoodElements) {
   const MeshingResult made = mesh_surface(shell);
   expect_valid(made.mesh, shell);
   EXPECT_EQ(made.report.method, Method::medial);
-  EXPECT_GT(made.report.aspect_mean, 0.75);
+  EXPECT_GT(made.report.quality.aspect_mean, 0.75);
   EXPECT_LE(made.mesh.n_tets(), 20000);
 }
 

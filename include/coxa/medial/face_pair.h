@@ -5,6 +5,7 @@
 #include <coxa/medial/surface_sides.h>
 #include <coxa/mesh/tri_mesh.h>
 
+#include <utility>
 #include <vector>
 
 namespace coxa::medial {
@@ -17,11 +18,27 @@ struct BorderCurve {
     Vec3 tangent = Vec3::UnitX();  ///< unit, along the loop
   };
   Nearest nearest(const Vec3& p) const;
+  /// The points `reach` mm before and after the point nearest to p, along its loop.
+  std::pair<Vec3, Vec3> around(const Vec3& p, double reach) const;
 };
 
 /// Where the ball around a medial point touches the two faces.
 struct BallFeet {
   Vec3 first, second;
+};
+
+/// Unit vectors in a face, at right angles to its border edges and pointing into it.
+struct InwardField {
+  std::vector<Vec3> places, directions;
+  /// Mean direction near p, not normalised; border edges nearer than about `reach` mm count most.
+  Vec3 mean(const Vec3& p, double reach) const;
+};
+
+/// The two faces where they meet at the rim.
+struct RimWedge {
+  Vec3 inward =
+      Vec3::Zero();    ///< unit, halfway between the faces; zero where they give no direction
+  double angle = kPi;  ///< rad, between the faces: small at a knife edge
 };
 
 /// The two faces of a sheet-like body as search trees, with their border curves.
@@ -38,6 +55,9 @@ class FacePair {
   /// Feet of a border node: the nearest points of the two border curves.
   BallFeet rim_feet(const Vec3& p) const;
 
+  /// The wedge between the faces near a rim point, a mean over about 1 mm.
+  RimWedge rim_wedge(const Vec3& p) const;
+
   const TriMesh& first_face() const { return first_face_; }
   const TriMesh& second_face() const { return second_face_; }
   const TriangleTree& first_tree() const { return first_; }
@@ -50,10 +70,12 @@ class FacePair {
   TriMesh first_face_, second_face_;
   TriangleTree first_, second_;
   BorderCurve first_border_, second_border_, rim_;
+  InwardField first_inward_, second_inward_;
 };
 
 /// The triangles with one label, vertices renumbered in order.
 TriMesh face_of(const TriMesh& surface, const SurfaceSides& sides, SideLabel label);
+InwardField inward_field(const TriMesh& face);
 /// The border loops of a face.
 /// @throws Error bad_mesh if the border touches itself, naming the place
 BorderCurve border_of(const TriMesh& face);

@@ -3,6 +3,7 @@
 #include <coxa/core/monitor.h>
 #include <coxa/core/types.h>
 #include <coxa/mesh/tet_mesh.h>
+#include <coxa/mesh/tet_quality.h>
 #include <coxa/mesh/tri_mesh.h>
 
 #include <optional>
@@ -38,12 +39,8 @@ struct MeshingReport {
   double sheetness = 0.0;             ///< share of the surface that faces its other side, in [0, 1]
   int layers = 0;                     ///< through the sheet; 0 for a lattice mesh
   double rim_rounding = 0.0;          ///< mm: largest distance the rim was moved inwards
-  double aspect_mean = 0.0;           ///< 3 r_in / r_circ, 1 for the regular tetrahedron
-  double aspect_p05 = 0.0;            ///< its 5th percentile
-  double aspect_min = 0.0;
-  double dihedral_min = 0.0;       ///< rad
-  double dihedral_max = 0.0;       ///< rad
-  std::vector<std::string> notes;  ///< what the caller should know, in plain words
+  TetQuality quality;                 ///< of the four-corner elements
+  std::vector<std::string> notes;     ///< what the caller should know, in plain words
 };
 
 struct MeshingResult {
