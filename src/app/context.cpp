@@ -47,7 +47,9 @@ Monitor Context::monitor() {
     std::signal(SIGTERM, on_interrupt);
   }
   Monitor monitor;
-  monitor.on_progress = [this](std::string_view stage, double share) { progress_->update(stage, share); };
+  monitor.on_progress = [this](std::string_view stage, double share) {
+    progress_->update(stage, share);
+  };
   monitor.on_warning = [this](std::string_view text) { progress_->warn(text); };
   monitor.cancel_flag = &interrupted;
   return monitor;

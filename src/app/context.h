@@ -11,11 +11,11 @@ namespace coxa::app {
 
 /// Flags every verb understands.
 struct CommonOptions {
-  int threads = 0;          ///< 0: as many as the machine has
-  std::uint64_t seed = 1;   ///< of everything random
-  bool json = false;        ///< progress, result and errors as JSON lines on standard output
-  bool quiet = false;       ///< errors and the result only
-  bool verbose = false;     ///< figures of every stage
+  int threads = 0;         ///< 0: as many as the machine has
+  std::uint64_t seed = 1;  ///< of everything random
+  bool json = false;       ///< progress, result and errors as JSON lines on standard output
+  bool quiet = false;      ///< errors and the result only
+  bool verbose = false;    ///< figures of every stage
 };
 
 class ProgressPrinter;

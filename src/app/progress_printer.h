@@ -8,7 +8,8 @@ namespace coxa::app {
 
 enum class ProgressStyle { terminal, lines, json, silent };
 
-/// One line with stage, share and time left on a terminal; plain lines when piped; JSON lines with --json.
+/// One line with stage, share and time left on a terminal; plain lines when piped; JSON lines with
+/// --json.
 class ProgressPrinter {
  public:
   explicit ProgressPrinter(ProgressStyle style) : style_(style) {}

@@ -38,14 +38,16 @@ void make_empty_folder(const fs::path& folder) {
   std::error_code error;
   fs::remove_all(folder, error);
   fs::create_directories(folder, error);
-  if (error) fail(ErrorCode::bad_file, "cannot make the folder ", folder.string(), ": ", error.message());
+  if (error)
+    fail(ErrorCode::bad_file, "cannot make the folder ", folder.string(), ": ", error.message());
 }
 
 void put_in_place(const fs::path& partial, const fs::path& folder) {
   std::error_code error;
   fs::remove_all(folder, error);
   fs::rename(partial, folder, error);
-  if (error) fail(ErrorCode::bad_file, "cannot put the result at ", folder.string(), ": ", error.message());
+  if (error)
+    fail(ErrorCode::bad_file, "cannot put the result at ", folder.string(), ": ", error.message());
 }
 
 }  // namespace

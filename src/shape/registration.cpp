@@ -6,6 +6,7 @@
 #include <coxa/geom/triangle_tree.h>
 #include <coxa/mesh/vertex_normals.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace coxa::shape {

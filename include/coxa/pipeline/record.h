@@ -12,7 +12,8 @@ namespace coxa::pipeline {
 using Value = std::variant<bool, std::int64_t, double, std::string>;
 using Fields = std::map<std::string, Value>;  ///< key with its unit, for example "target_edge_mm"
 
-/// What a verb did: written as JSON beside its result, and the ground on which a finished stage is kept.
+/// What a verb did: written as JSON beside its result, and the ground on which a finished stage is
+/// kept.
 struct Record {
   std::string verb;
   Fields options;                             ///< in full, defaults included
@@ -34,9 +35,6 @@ void write_record(const std::filesystem::path& path, const Record& record);
 
 /// @throws Error bad_file if it is missing or not a record
 Record read_record(const std::filesystem::path& path);
-
-/// SHA-256 of a file's bytes; of a folder, over its files' names and bytes in order of name.
-std::string hash_of(const std::filesystem::path& path);
 
 /// Largest resident memory of this process so far, MB.
 double peak_memory_mb();

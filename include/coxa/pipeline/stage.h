@@ -12,12 +12,14 @@ enum class Reuse { if_unchanged, never };
 
 /// Runs one stage into `folder`, whole or not at all.
 ///
-/// The body fills a sibling folder `<name>.partial`, which is renamed into place at the end, with the record as
-/// `<verb>.json` inside. Where `folder` holds a record with the same key the body is not run again. A body that
-/// throws leaves an earlier result as it was and removes what it had begun.
+/// The body fills a sibling folder `<name>.partial`, which is renamed into place at the end, with
+/// the record as
+/// `<verb>.json` inside. Where `folder` holds a record with the same key the body is not run again.
+/// A body that throws leaves an earlier result as it was and removes what it had begun.
 /// @param wanted  verb, options and inputs; the body adds figures and warnings
 /// @returns the record of the result now in `folder`
-Record run_stage(const std::filesystem::path& folder, Record wanted, Reuse reuse, const Monitor& monitor,
-                 const std::function<void(const std::filesystem::path& partial, Record& record)>& body);
+Record run_stage(
+    const std::filesystem::path& folder, Record wanted, Reuse reuse, const Monitor& monitor,
+    const std::function<void(const std::filesystem::path& partial, Record& record)>& body);
 
 }  // namespace coxa::pipeline

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <coxa/core/monitor.h>
+#include <coxa/pipeline/atlas_examples.h>
+#include <coxa/pipeline/record.h>
+
+#include <filesystem>
+
+namespace coxa::pipeline {
+
+struct AtlasRequest {
+  std::filesystem::path data = "../shared/data";
+  AtlasExampleOptions examples;
+};
+
+/// Builds an atlas and writes it whole, with `<stem>.json` beside it.
+Record build_atlas_file(const AtlasRequest& request, const std::filesystem::path& out,
+                        const Monitor& monitor);
+
+}  // namespace coxa::pipeline

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <coxa/core/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace coxa::pipeline {
+
+/// One MRI of the subject.
+struct ImageEntry {
+  std::filesystem::path path;         ///< NIfTI, NRRD, MetaImage or a DICOM folder
+  std::optional<std::string> series;  ///< of a DICOM folder with several
+};
+
+/// The movement: either a pattern or recorded markers.
+struct MotionEntry {
+  std::string
+      pattern;  ///< name of a movement in data/movements, or a movement file; empty: markers
+  std::filesystem::path markers;  ///< C3D, TRC or CSV
+  std::filesystem::path config;   ///< how the markers are to be read (docs/motion.md)
+  Index frames = 14;  ///< frames that are simulated, spread evenly over the movement, >= 2
+};
+
+enum class Loading { joint_force, prescribed_pose };
+
+struct JointEntry {
+  Loading loading = Loading::joint_force;
+  double force = 500.0;          ///< N, of the joint force
+  double youngs_modulus = 12.0;  ///< MPa
+  double poisson_ratio = 0.42;
+  std::string law = "corotational";  ///< or st_venant_kirchhoff
+};
+
+struct MeshEntry {
+  Index layers = 1;        ///< through the cartilage, 1 to 8
+  Index max_tets = 20000;  ///< per cartilage
+};
+
+/// A subject file (`SUBJECT.toml`), its paths resolved against the file's folder.
+struct Subject {
+  std::filesystem::path file;
+  std::string name;
+  Side side = Side::right;
+  std::optional<double> body_mass;  ///< kg
+  std::vector<ImageEntry> images;   ///< at least one
+  std::filesystem::path landmarks;  ///< `.mrk.json` or CSV
+  std::filesystem::path atlas;      ///< the shipped one where the file names none
+  MotionEntry motion;
+  MeshEntry mesh;
+  JointEntry joint;
+};
+
+/// @throws Error bad_input for a missing or unknown key (the nearest known one is named), a value
+/// out of range,
+///         or an input file that does not exist
+Subject read_subject(const std::filesystem::path& path);
+
+/// The atlas that ships with coxa; the environment variable COXA_DATA overrides its folder.
+std::filesystem::path shipped_data(const std::string& relative);
+
+}  // namespace coxa::pipeline

@@ -1,0 +1,50 @@
+#include <coxa/pipeline/mesh_stage.h>
+
+#include "commands.h"
+
+namespace coxa::app {
+namespace {
+
+struct MeshArguments {
+  std::string surface, bone, method = "automatic", out;
+  int layers = 0, nodes = 4;
+  meshing::MeshingOptions options;
+};
+
+void run_mesh(const MeshArguments& arguments, Context& context) {
+  pipeline::MeshRequest request{arguments.surface, arguments.bone, arguments.options};
+  const std::map<std::string, meshing::Method> methods{{"automatic", meshing::Method::automatic},
+                                                       {"medial", meshing::Method::medial},
+                                                       {"lattice", meshing::Method::lattice}};
+  request.options.method = methods.at(arguments.method);
+  if (arguments.layers > 0) request.options.layers = arguments.layers;
+  if (arguments.nodes == 10) request.options.order = meshing::ElementOrder::ten_node;
+  const auto record = pipeline::run_mesh_file(request, arguments.out, context.monitor());
+  context.print_result(arguments.out, record);
+}
+
+}  // namespace
+
+void add_mesh(CLI::App& app, Context& context) {
+  auto* verb = app.add_subcommand("mesh", "tetrahedra from a closed surface");
+  auto arguments = std::make_shared<MeshArguments>();
+  verb->add_option("--surface", arguments->surface, "closed surface: PLY, STL, OBJ or VTP, mm")
+      ->required()
+      ->check(CLI::ExistingFile);
+  verb->add_option("--bone", arguments->bone,
+                   "surface of the bone it lies on, to tag the bone side")
+      ->check(CLI::ExistingFile);
+  verb->add_option("--method", arguments->method, "medial for sheets, lattice for solid shapes")
+      ->check(CLI::IsMember({"automatic", "medial", "lattice"}));
+  verb->add_option("--tets", arguments->options.max_tets, "largest number of tetrahedra")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--layers", arguments->layers, "layers through the thickness, 1 to 8")
+      ->check(CLI::Range(1, 8));
+  verb->add_option("--nodes", arguments->nodes, "nodes an element: 4 or 10")
+      ->check(CLI::IsMember({4, 10}));
+  verb->add_option("--out", arguments->out, "VTU, Gmsh .msh, CalculiX .inp or FEBio .feb")
+      ->required();
+  verb->callback([arguments, &context] { run_mesh(*arguments, context); });
+}
+
+}  // namespace coxa::app

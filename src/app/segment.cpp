@@ -1,0 +1,78 @@
+#include <coxa/core/error.h>
+#include <coxa/pipeline/segment_stage.h>
+
+#include "commands.h"
+
+namespace coxa::app {
+namespace {
+
+struct SegmentArguments {
+  std::vector<std::string> images;
+  std::string series, side, landmarks, structures = "bones,cartilage", atlas, contrast, out;
+  double landmark_error = segment::SegmentOptions{}.landmark_error;
+};
+
+std::vector<std::string> structures_from(const std::string& list) {
+  const std::map<std::string, std::vector<std::string>> groups{
+      {"bones", {"femur", "hip_bone"}},
+      {"cartilage", {"femoral_cartilage", "acetabular_cartilage"}},
+      {"all", {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"}}};
+  std::vector<std::string> names;
+  for (const std::string& word : CLI::detail::split(list, ',')) {
+    const auto group = groups.find(word);
+    if (group == groups.end()) {
+      names.push_back(word);
+    } else {
+      names.insert(names.end(), group->second.begin(), group->second.end());
+    }
+  }
+  return names;
+}
+
+void run_segment(const SegmentArguments& arguments, Context& context) {
+  pipeline::SegmentRequest request;
+  for (const std::string& image : arguments.images) {
+    request.images.push_back(
+        {image, arguments.series.empty() ? std::nullopt : std::optional(arguments.series)});
+  }
+  request.side = arguments.side == "left" ? Side::left : Side::right;
+  request.landmarks = arguments.landmarks;
+  request.atlas =
+      arguments.atlas.empty() ? pipeline::shipped_data("atlas/hip.coxa-atlas") : arguments.atlas;
+  request.options.structures = structures_from(arguments.structures);
+  request.options.landmark_error = arguments.landmark_error;
+  if (!arguments.contrast.empty()) request.options.contrast = arguments.contrast;
+  const auto record = pipeline::run_segment_stage(request, arguments.out, pipeline::Reuse::never,
+                                                  context.monitor());
+  context.print_result(arguments.out, record);
+}
+
+}  // namespace
+
+void add_segment(CLI::App& app, Context& context) {
+  auto* verb = app.add_subcommand("segment", "surfaces of one hip from its MRI");
+  auto arguments = std::make_shared<SegmentArguments>();
+  verb->add_option("--image", arguments->images,
+                   "NIfTI, NRRD, MetaImage or DICOM folder; several of one patient allowed")
+      ->required()
+      ->check(CLI::ExistingPath);
+  verb->add_option("--series", arguments->series, "which series of a DICOM folder");
+  verb->add_option("--side", arguments->side, "side of the hip")
+      ->required()
+      ->check(CLI::IsMember({"left", "right"}));
+  verb->add_option("--landmarks", arguments->landmarks, "landmarks, .mrk.json or CSV")
+      ->check(CLI::ExistingFile);
+  verb->add_option("--landmark-error", arguments->landmark_error,
+                   "expected error of a landmark, mm")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--structures", arguments->structures,
+                   "bones, cartilage, all, or names, separated by commas");
+  verb->add_option("--contrast", arguments->contrast,
+                   "profiles of the atlas to use; the best fitting where not given");
+  verb->add_option("--atlas", arguments->atlas, "atlas file; the shipped one where not given")
+      ->check(CLI::ExistingFile);
+  verb->add_option("--out", arguments->out, "folder of the result")->required();
+  verb->callback([arguments, &context] { run_segment(*arguments, context); });
+}
+
+}  // namespace coxa::app

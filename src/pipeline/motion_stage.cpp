@@ -1,0 +1,179 @@
+#include <coxa/pipeline/motion_stage.h>
+
+#include <coxa/core/error.h>
+#include <coxa/io/files.h>
+#include <coxa/io/landmarks.h>
+#include <coxa/io/markers.h>
+#include <coxa/io/motion_files.h>
+#include <coxa/io/movement_files.h>
+#include <coxa/io/track_model.h>
+#include <coxa/motion/clinical_pattern.h>
+#include <coxa/motion/track.h>
+#include <coxa/pipeline/segment_stage.h>
+
+#include <nlohmann/json.hpp>
+
+namespace coxa::pipeline {
+namespace fs = std::filesystem;
+namespace {
+using Json = nlohmann::json;
+
+Json as_json(const motion::BoneFrame& frame) {
+  Json axes = Json::array();
+  for (int c = 0; c < 3; ++c) {
+    axes.push_back({frame.X_IB.R(0, c), frame.X_IB.R(1, c), frame.X_IB.R(2, c)});
+  }
+  return {{"origin_lps_mm", {frame.X_IB.p.x(), frame.X_IB.p.y(), frame.X_IB.p.z()}},
+          {"axes_anterior_superior_right", axes},
+          {"source", frame.source},
+          {"interval_deg", degrees(frame.interval)}};
+}
+
+motion::BoneFrame frame_from(const Json& json) {
+  motion::BoneFrame frame;
+  for (int r = 0; r < 3; ++r) {
+    frame.X_IB.p[r] = json.at("origin_lps_mm").at(r).get<double>();
+    for (int c = 0; c < 3; ++c) {
+      frame.X_IB.R(r, c) = json.at("axes_anterior_superior_right").at(c).at(r).get<double>();
+    }
+  }
+  frame.source = json.at("source").get<std::string>();
+  frame.interval = radians(json.at("interval_deg").get<double>());
+  return frame;
+}
+
+Record wanted_record(const Subject& subject, const fs::path& segment_folder) {
+  Record record;
+  record.verb = "motion";
+  record.options = {{"side", std::string(subject.side == Side::left ? "left" : "right")},
+                    {"frames", std::int64_t{subject.motion.frames}}};
+  record.inputs["segment"] = record_key(read_record(segment_folder / "segment.json"));
+  if (!subject.landmarks.empty())
+    record.inputs["landmarks"] = io::sha256_of_path(subject.landmarks);
+  if (subject.motion.pattern.empty()) {
+    record.inputs["markers"] = io::sha256_of_path(subject.motion.markers);
+    if (!subject.motion.config.empty())
+      record.inputs["config"] = io::sha256_of_path(subject.motion.config);
+  } else {
+    record.inputs["movement"] = io::sha256_of_path(movement_file(subject.motion.pattern));
+  }
+  return record;
+}
+
+/// `count` frames spread evenly over the motion, first and last among them.
+motion::HipMotion thinned(const motion::HipMotion& all, Index count) {
+  if (all.n_frames() <= count) return all;
+  motion::HipMotion few;
+  few.method = all.method;
+  few.warnings = all.warnings;
+  few.head_lab.resize(all.head_lab.rows() > 0 ? count : 0, 3);
+  for (Index i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(
+        std::lround(static_cast<double>(i) * (all.n_frames() - 1) / (count - 1)));
+    few.time.push_back(all.time[k]);
+    few.angles.push_back(all.angles[k]);
+    few.X_PF.push_back(all.X_PF[k]);
+    if (!all.interval.empty()) few.interval.push_back(all.interval[k]);
+    if (few.head_lab.rows() > 0) few.head_lab.row(i) = all.head_lab.row(static_cast<Index>(k));
+  }
+  return few;
+}
+
+motion::HipMotion make_motion(const Subject& subject, const fs::path& folder,
+                              const Monitor& monitor) {
+  if (!subject.motion.pattern.empty()) {
+    const auto pattern = io::read_pattern(movement_file(subject.motion.pattern));
+    return motion::make_movement(pattern, subject.side, {.n_frames = subject.motion.frames});
+  }
+  require(!subject.motion.config.empty(), subject.file.string(),
+          ": [motion] with markers needs config: the file that "
+          "says where the joint centre and the markers lie on the bones (docs/motion.md)");
+  const auto result =
+      motion::track_in_detail(io::read_markers(subject.motion.markers),
+                              io::read_hip_model(subject.motion.config), {}, monitor);
+  io::write_motion(folder / "tracked.csv", result.motion);
+  io::write_residuals(folder / "residuals.csv", result);
+  return thinned(result.motion, subject.motion.frames);
+}
+
+void add_figures(const motion::JointCentreResult& centre, const motion::BoneFrames& frames,
+                 Record& record) {
+  record.figures["femoral_head_radius_mm"] = centre.chosen.radius;
+  record.figures["femoral_head_rms_mm"] = centre.chosen.rms;
+  record.figures["joint_centre_definition"] = centre.chosen.definition;
+  record.figures["joint_centre_interval_mm"] = centre.chosen.interval;
+  record.figures["joint_centre_spread_mm"] = centre.largest_spread;
+  record.figures["pelvis_frame_source"] = frames.pelvis.source;
+  record.figures["pelvis_frame_interval_deg"] = degrees(frames.pelvis.interval);
+  record.figures["femur_frame_source"] = frames.femur.source;
+  record.figures["femur_frame_interval_deg"] = degrees(frames.femur.interval);
+}
+
+void write_centres(const fs::path& path, const motion::JointCentreResult& result) {
+  std::string text =
+      "definition,x_mm,y_mm,z_mm,radius_mm,rms_mm,covered_share,interval_mm,region\n";
+  for (const motion::JointCentre& c : result.all) {
+    text += join_text(c.definition, ',', c.centre.x(), ',', c.centre.y(), ',', c.centre.z(), ',',
+                      c.radius, ',', c.rms, ',', c.covered_share, ',', c.interval, ",\"", c.region,
+                      "\"\n");
+  }
+  io::write_bytes(path, text);
+}
+
+}  // namespace
+
+fs::path movement_file(const std::string& pattern) {
+  if (fs::exists(pattern)) return pattern;
+  const fs::path folder = shipped_data("movements");
+  const fs::path shipped = folder / (pattern + ".toml");
+  if (fs::exists(shipped)) return shipped;
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder))
+    names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  std::string known;
+  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+  fail(ErrorCode::bad_input, "there is no movement \"", pattern, "\": neither a file nor one of ",
+       known);
+}
+
+Record run_motion_stage(const Subject& subject, const fs::path& segment_folder,
+                        const fs::path& folder, Reuse reuse, const Monitor& monitor) {
+  const auto body = [&](const fs::path& partial, Record& record) {
+    const SurfaceSet surfaces = read_surfaces(segment_folder);
+    const auto centre = motion::find_joint_centre(surfaces, {}, monitor);
+    motion::FrameLandmarks landmarks;
+    if (!subject.landmarks.empty()) landmarks.points = io::read_landmarks(subject.landmarks);
+    const auto frames =
+        motion::make_bone_frames(surfaces, landmarks, centre.chosen.centre, subject.side);
+    monitor.progress("motion", 0.3);
+    const motion::HipMotion motion = make_motion(subject, partial, monitor);
+    io::write_motion(partial / "motion.csv", motion);
+    io::write_opensim_motion(partial / "motion.mot", motion, subject.side);
+    io::write_bytes(
+        partial / "frames.json",
+        Json{{"pelvis", as_json(frames.pelvis)}, {"femur", as_json(frames.femur)}}.dump(2) + "\n");
+    write_centres(partial / "joint_centres.csv", centre);
+    add_figures(centre, frames, record);
+    for (const auto* list : {&centre.warnings, &frames.warnings, &motion.warnings}) {
+      record.warnings.insert(record.warnings.end(), list->begin(), list->end());
+    }
+  };
+  return run_stage(folder, wanted_record(subject, segment_folder), reuse, monitor, body);
+}
+
+MotionArtefacts read_motion_artefacts(const fs::path& folder, Side side) {
+  MotionArtefacts artefacts;
+  artefacts.motion = io::read_motion(folder / "motion.csv", side);
+  try {
+    const Json json = Json::parse(io::read_bytes(folder / "frames.json"));
+    artefacts.frames.pelvis = frame_from(json.at("pelvis"));
+    artefacts.frames.femur = frame_from(json.at("femur"));
+  } catch (const Json::exception& error) {
+    fail(ErrorCode::bad_file, (folder / "frames.json").string(),
+         " is not what coxa wrote: ", error.what());
+  }
+  return artefacts;
+}
+
+}  // namespace coxa::pipeline

@@ -1,0 +1,135 @@
+#include <coxa/pipeline/subject.h>
+
+#include <coxa/core/error.h>
+#include <coxa/io/config.h>
+
+#include <cstdlib>
+
+namespace coxa::pipeline {
+namespace fs = std::filesystem;
+namespace {
+
+// a movement needs a start and an end; more than this is a mistake rather than a wish
+constexpr Index kFewestFrames = 2, kMostFrames = 2000;
+// joint forces beyond ten times a heavy body's weight are a wrong unit
+constexpr double kLargestForce = 15000.0;
+
+fs::path existing(const io::Table& table, const std::string& key,
+                  const std::optional<fs::path>& path) {
+  require(path.has_value(), table.where(key), " is needed: the path of a file");
+  require(fs::exists(*path), table.where(key), ": there is no ", path->string());
+  return *path;
+}
+
+Side read_side(const io::Table& table) {
+  const auto text = table.get<std::string>("side");
+  require(text == "left" || text == "right", table.where("side"),
+          " must be \"left\" or \"right\", got \"", text, "\"");
+  return text == "left" ? Side::left : Side::right;
+}
+
+std::vector<ImageEntry> read_images(const io::Table& root) {
+  std::vector<ImageEntry> images;
+  for (const io::Table& table : root.tables("image")) {
+    images.push_back(
+        {existing(table, "path", table.find_path("path")), table.find<std::string>("series")});
+    table.finish();
+  }
+  require(!images.empty(), root.where("image"), " is needed: a table with the path of an MRI");
+  return images;
+}
+
+MotionEntry read_motion(const io::Table& root) {
+  const auto table = root.find_table("motion");
+  require(table.has_value(), root.where("motion"), " is needed: a table with a pattern or markers");
+  MotionEntry motion;
+  motion.pattern = table->value_or<std::string>("pattern", "");
+  if (const auto markers = table->find_path("markers"))
+    motion.markers = existing(*table, "markers", markers);
+  if (const auto config = table->find_path("config"))
+    motion.config = existing(*table, "config", config);
+  motion.frames = table->value_or<Index>("frames", motion.frames);
+  table->finish();
+  require(motion.pattern.empty() != motion.markers.empty(), root.where("motion"),
+          " must give either a pattern or markers, and not both");
+  require(kFewestFrames <= motion.frames && motion.frames <= kMostFrames, table->where("frames"),
+          " must be ", kFewestFrames, " to ", kMostFrames, ", got ", motion.frames);
+  return motion;
+}
+
+MeshEntry read_mesh(const io::Table& root) {
+  MeshEntry mesh;
+  const auto table = root.find_table("mesh");
+  if (!table) return mesh;
+  mesh.layers = table->value_or<Index>("layers", mesh.layers);
+  mesh.max_tets = table->value_or<Index>("max_tets", mesh.max_tets);
+  table->finish();
+  require(1 <= mesh.layers && mesh.layers <= 8, table->where("layers"), " must be 1 to 8, got ",
+          mesh.layers);
+  require(mesh.max_tets >= 1000, table->where("max_tets"), " must be at least 1000, got ",
+          mesh.max_tets);
+  return mesh;
+}
+
+void check_joint(const io::Table& table, const JointEntry& joint) {
+  require(joint.force > 0.0 && joint.force <= kLargestForce, table.where("force_N"),
+          " must be in (0, ", kLargestForce, "] N, got ", joint.force);
+  require(joint.youngs_modulus > 0.0, table.where("young_mpa"), " must be positive, got ",
+          joint.youngs_modulus);
+  require(joint.poisson_ratio > 0.0 && joint.poisson_ratio < 0.5, table.where("poisson"),
+          " must be in (0, 0.5), got ", joint.poisson_ratio);
+  require(joint.law == "corotational" || joint.law == "st_venant_kirchhoff", table.where("law"),
+          " must be \"corotational\" or \"st_venant_kirchhoff\", got \"", joint.law, "\"");
+}
+
+JointEntry read_joint(const io::Table& root) {
+  JointEntry joint;
+  const auto table = root.find_table("joint");
+  if (!table) return joint;
+  const auto loading = table->value_or<std::string>("loading", "joint_force");
+  require(loading == "joint_force" || loading == "prescribed_pose", table->where("loading"),
+          " must be \"joint_force\" or \"prescribed_pose\", got \"", loading, "\"");
+  joint.loading = loading == "joint_force" ? Loading::joint_force : Loading::prescribed_pose;
+  joint.force = table->value_or("force_N", joint.force);
+  joint.youngs_modulus = table->value_or("young_mpa", joint.youngs_modulus);
+  joint.poisson_ratio = table->value_or("poisson", joint.poisson_ratio);
+  joint.law = table->value_or("law", joint.law);
+  table->finish();
+  check_joint(*table, joint);
+  return joint;
+}
+
+}  // namespace
+
+Subject read_subject(const fs::path& path) {
+  const io::Table root = io::Table::read(path);
+  Subject subject;
+  subject.file = path;
+  subject.name = root.value_or<std::string>("name", path.stem().string());
+  subject.side = read_side(root);
+  subject.body_mass = root.find<double>("body_mass_kg");
+  require(!subject.body_mass || *subject.body_mass > 0.0, root.where("body_mass_kg"),
+          " must be positive");
+  subject.images = read_images(root);
+  if (const auto table = root.find_table("landmarks")) {
+    subject.landmarks = existing(*table, "path", table->find_path("path"));
+    table->finish();
+  }
+  subject.atlas = shipped_data("atlas/hip.coxa-atlas");
+  if (const auto table = root.find_table("atlas")) {
+    subject.atlas = existing(*table, "path", table->find_path("path"));
+    table->finish();
+  }
+  subject.motion = read_motion(root);
+  subject.mesh = read_mesh(root);
+  subject.joint = read_joint(root);
+  root.finish();
+  return subject;
+}
+
+fs::path shipped_data(const std::string& relative) {
+  const char* override_folder = std::getenv("COXA_DATA");
+  return fs::path(override_folder ? override_folder : COXA_DATA_DIR) / relative;
+}
+
+}  // namespace coxa::pipeline
