@@ -30,6 +30,20 @@ void check_cartilage(const TetMesh& mesh, const char* what) {
   }
 }
 
+/// Share of the articular surface's normals that point away from the joint centre, by area, in [-1,
+/// 1].
+double outwardness(const TetMesh& mesh, const Vec3& centre) {
+  const TriMesh articular{mesh.points, facets_with(mesh, FacetTag::articular_side)};
+  const Points normals = triangle_normals(articular);
+  const VecX areas = triangle_areas(articular);
+  double sum = 0.0;
+  for (Index f = 0; f < articular.n_triangles(); ++f) {
+    const Vec3 middle = articular.points(articular.triangles.row(f), Eigen::all).colwise().mean();
+    sum += areas[f] * ((middle - centre).dot(normals.row(f)) > 0.0 ? 1.0 : -1.0);
+  }
+  return sum / areas.sum();
+}
+
 }  // namespace
 
 void check_model(const JointModel& model) {
@@ -44,6 +58,15 @@ void check_model(const JointModel& model) {
   require(apart <= kCentreSlack,
           "pelvis and femur frames must both have their origin at the joint ",
           "centre in the image pose; they are ", apart, " mm apart, limit ", kCentreSlack, " mm");
+  if (outwardness(model.acetabular_cartilage, model.X_IP.p) > 0.0) {
+    fail(ErrorCode::bad_mesh,
+         "the acetabular cartilage's articular side faces away from the joint centre: ",
+         "articular_side and bone_side look exchanged");
+  }
+  if (outwardness(model.femoral_cartilage, model.X_IF.p) < 0.0) {
+    fail(ErrorCode::bad_mesh, "the femoral cartilage's articular side faces the joint centre: ",
+         "articular_side and bone_side look exchanged");
+  }
   require(model.hip_bone.empty() == model.femur.empty(),
           "the bony limit needs both bone surfaces, or none");
   if (!model.femur.empty()) {
