@@ -5,6 +5,7 @@
 #include <coxa/collide/surface_contact.h>
 #include <coxa/core/error.h>
 #include <coxa/dynamics/integrators.h>
+#include <coxa/mesh/measures.h>
 #include <coxa/segment/force_field.h>
 
 #include <algorithm>
@@ -23,7 +24,17 @@ constexpr int kFieldSmoothing = 2;
 /// Penalty of a match at the end of the search range.
 constexpr double kShiftPenalty = 0.1;
 
+/// mm. Cartilages are 1 to 3 mm thick: what is deeper inside than this is nearer to the far side.
+constexpr double kContactReach = 1.5;
+/// Only sides that look at each other push: the far side of a thin sheet does not.
+constexpr double kContactFacing = 0.3;
+
 using Contacts = std::vector<std::unique_ptr<collide::SurfaceContact>>;
+
+/// mm², mean area around a vertex.
+double vertex_area(const SimplexMesh& mesh) {
+  return area(fan_surface(mesh)) / static_cast<double>(mesh.n_vertices());
+}
 
 std::size_t level_of(const Body& body, const Resolution& resolution) {
   const std::size_t finest = body.model->hierarchy.levels.size() - 1;
@@ -55,11 +66,13 @@ Contacts make_contacts(const std::vector<LevelForces>& levels, const Surrounding
   Contacts contacts;
   if (options.weights.contact <= 0.0) return contacts;
   collide::ContactOptions contact;
-  contact.stiffness = options.weights.contact;
   contact.minimum_gap = options.minimum_gap;
-  contact.facing = 0.0;
+  contact.search_distance = kContactReach;
+  contact.facing = kContactFacing;
   contact.quadrature = collide::ContactQuadrature::vertices;
   for (std::size_t a = 0; a < levels.size(); ++a) {
+    // the weight is per vertex, so that a coarse mesh is not pushed harder for its larger triangles
+    contact.stiffness = options.weights.contact / vertex_area(levels[a].mesh());
     const auto slave = collide::make_particle_surface(levels[a].mesh(), levels[a].first());
     for (const TriMesh& obstacle : surroundings.obstacles[a]) {
       contacts.push_back(std::make_unique<collide::SurfaceContact>(slave, obstacle, contact));

@@ -12,6 +12,10 @@ namespace {
 /// but the affine part of the field does.
 constexpr double kTangentialImage = 0.1;
 
+/// Metric parameters of an even mesh are about 1/3; beyond this size the foot lies far outside the
+/// triangle.
+constexpr double kLargestMetric = 1.0;
+
 std::vector<double> simplex_angles(const Points& p, const Triangles& neighbours) {
   std::vector<double> angles(static_cast<std::size_t>(p.rows()));
   parallel_for(p.rows(), [&](Index v) {
@@ -66,6 +70,15 @@ void LevelForces::prepare_internal(const Points& fit, const ForceWeights& weight
     };
     const SimplexParameters form =
         simplex_parameters(fit.row(v).transpose(), corner(fit, 0), corner(fit, 1), corner(fit, 2));
+    if (form.metric.cwiseAbs().maxCoeff() > kLargestMetric) {
+      // on a knife edge the neighbours' triangle does not describe the vertex: its place in the fit
+      // does
+      metric.row(v).setConstant(1.0 / 3.0);
+      const Vec3 centre = (corner(fit, 0) + corner(fit, 1) + corner(fit, 2)) / 3.0;
+      remembered.row(v) = fit.row(v) - centre.transpose();
+      smooth.row(v) = remembered.row(v);
+      return;
+    }
     const Vec3 A = corner(x, 0), B = corner(x, 1), C = corner(x, 2);
     const Vec3 foot = form.metric[0] * A + form.metric[1] * B + form.metric[2] * C;
     const Vec3 by_form = position_from(form, A, B, C);

@@ -15,6 +15,18 @@ constexpr int kAlternations = 4;
 constexpr double kIndependentVertices = 300.0;
 constexpr double kLargestCoefficient = 3.0;
 
+/// Adult hips differ in size by 7 % (one standard deviation); what is farther off is no hip, or not
+/// found yet.
+constexpr double kLargestScale = 1.25;
+
+/// The pose with its scale kept to what adults have.
+Similarity of_adult_size(const Similarity& pose, const Points& shape, const Points& targets,
+                         const VecX& weights) {
+  const double scale = std::clamp(pose.scale, 1.0 / kLargestScale, kLargestScale);
+  if (scale == pose.scale) return pose;
+  return {scale, fit_rigid(scale * shape, targets, weights)};
+}
+
 }  // namespace
 
 ModelFit fit_model(const shape::StructureModel& model, const Points& targets, const VecX& weights,
@@ -36,6 +48,7 @@ ModelFit fit_model(const shape::StructureModel& model, const Points& targets, co
   const Eigen::LLT<MatX> solver(normal);
   for (int round = 0; round < kAlternations; ++round) {
     fit.pose = fit_similarity(shape, targets, safe);
+    fit.pose = of_adult_size(fit.pose, shape, targets, safe);
     if (k == 0) break;
     const RigidTransform back = fit.pose.X.inverse();
     const Points local = transformed(targets, back) / fit.pose.scale;

@@ -2,6 +2,10 @@
 
 #include <coxa/core/error.h>
 #include <coxa/geom/fits.h>
+#include <coxa/geom/thin_plate_spline.h>
+#include <coxa/geom/triangle_tree.h>
+
+#include <algorithm>
 
 #include <cmath>
 #include <string_view>
@@ -18,6 +22,10 @@ constexpr double kLargestScale = 1.5;
 /// mm. Landmarks of a real hip fit the mean hip's within 5 to 10; an interchanged pair misses by
 /// more.
 constexpr double kLargestMisfit = 25.0;
+/// mm. A landmark this deep in a bone is the centre of a round end; another bone this near shares
+/// it as its socket.
+constexpr double kJointDepth = 14.0;
+constexpr double kJointReach = 35.0;
 /// A mirror image that fits this many times better is the other side.
 constexpr double kMirrorRatio = 2.0;
 
@@ -67,6 +75,42 @@ void check_plausible(const Matched& matched) {
           "); two names may be interchanged, or the frame is not LPS");
 }
 
+/// Rows of the landmarks that belong to each bone.
+std::vector<std::vector<Index>> owned_landmarks(
+    const std::vector<const shape::StructureModel*>& bones, const Points& landmarks) {
+  std::vector<TriangleTree> trees;
+  for (const shape::StructureModel* bone : bones) {
+    const TriMesh mean = dual_surface(bone->hierarchy.levels.back());
+    trees.emplace_back(mean.points, mean.triangles);
+  }
+  std::vector<std::vector<Index>> owned(bones.size());
+  for (Index row = 0; row < landmarks.rows(); ++row) {
+    std::vector<double> distance;
+    for (const TriangleTree& tree : trees) {
+      distance.push_back(tree.signed_distance(landmarks.row(row).transpose()));
+    }
+    const double nearest = *std::min_element(distance.begin(), distance.end());
+    const double reach = nearest < -kJointDepth ? kJointReach : std::max(nearest, 0.0);
+    for (std::size_t b = 0; b < bones.size(); ++b) {
+      if (distance[b] <= reach) owned[b].push_back(row);
+    }
+  }
+  return owned;
+}
+
+/// Similarity of the rows given, or of all where they are too few to fix a pose.
+Similarity fit_rows(const Matched& matched, const std::vector<Index>& rows) {
+  if (rows.size() < 3) return fit_similarity(matched.atlas, matched.image);
+  Points a(rows.size(), 3), b(rows.size(), 3);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    a.row(static_cast<Index>(i)) = matched.atlas.row(rows[i]);
+    b.row(static_cast<Index>(i)) = matched.image.row(rows[i]);
+  }
+  // size is one number for the whole hip: the few landmarks of one bone would make it noisy
+  const double scale = fit_similarity(matched.atlas, matched.image).scale;
+  return {scale, fit_rigid(scale * a, b)};
+}
+
 }  // namespace
 
 Volume mirrored(const Volume& volume) {
@@ -114,14 +158,31 @@ shape::Landmarks landmarks_of_side(const shape::Landmarks& given, const shape::A
   return ours;
 }
 
-ThinPlateSpline place_by_landmarks(const shape::Landmarks& landmarks, const shape::Atlas& atlas,
-                                   double landmark_error) {
+std::vector<Points> place_by_landmarks(const std::vector<const shape::StructureModel*>& bones,
+                                       const shape::Landmarks& landmarks, const shape::Atlas& atlas,
+                                       double landmark_error) {
   const Matched matched = match_names(landmarks, atlas);
   const auto n = static_cast<Index>(matched.atlas.rows());
   require(n >= kLeastLandmarks, "segmentation needs at least ", kLeastLandmarks,
           " landmarks that the atlas knows, got ", n, "; it knows ", known_names(atlas));
   check_plausible(matched);
-  return ThinPlateSpline(matched.atlas, matched.image, kSmoothnessPerError * landmark_error);
+
+  const std::vector<std::vector<Index>> owned = owned_landmarks(bones, matched.atlas);
+  std::vector<Similarity> poses;
+  Points from = matched.atlas;
+  for (std::size_t b = 0; b < bones.size(); ++b) {
+    poses.push_back(fit_rows(matched, owned[b]));
+    for (const Index row : owned[b]) {
+      from.row(row) = transformed(poses[b].scale * matched.atlas.row(row), poses[b].X);
+    }
+  }
+  const ThinPlateSpline rest(from, matched.image, kSmoothnessPerError * landmark_error);
+  std::vector<Points> placed;
+  for (std::size_t b = 0; b < bones.size(); ++b) {
+    const Points& mean = bones[b]->hierarchy.levels.back().points;
+    placed.push_back(rest(transformed(poses[b].scale * mean, poses[b].X)));
+  }
+  return placed;
 }
 
 }  // namespace coxa::segment

@@ -35,7 +35,7 @@ StructureQuality quality_of(const Body& body) {
 
 Surface surface_of(const Body& body) {
   Surface surface;
-  surface.mesh = dual_surface(finest_mesh(body));
+  surface.mesh = surface_mesh(body);
   const Index n = surface.mesh.n_vertices();
   VecX confidence = VecX::Zero(n), completed = VecX::Zero(n), count = VecX::Zero(n);
   for (Index t = 0; t < surface.mesh.n_triangles(); ++t) {

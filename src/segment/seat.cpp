@@ -3,6 +3,7 @@
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
 #include <coxa/geom/triangle_tree.h>
+#include <coxa/mesh/measures.h>
 #include <coxa/mesh/simplex_mesh.h>
 
 #include <Eigen/Geometry>
@@ -16,17 +17,6 @@ constexpr double kSeatDistance = 0.45;
 constexpr double kSeatedShare = 0.2;
 /// A host has many times the volume of the layer on it; two touching layers have about the same.
 constexpr double kVolumeRatio = 3.0;
-
-double volume_of(const TriMesh& mesh) {
-  double sum = 0.0;
-  for (Index t = 0; t < mesh.n_triangles(); ++t) {
-    const Vec3 a = mesh.points.row(mesh.triangles(t, 0)).transpose();
-    const Vec3 b = mesh.points.row(mesh.triangles(t, 1)).transpose();
-    const Vec3 c = mesh.points.row(mesh.triangles(t, 2)).transpose();
-    sum += a.dot(b.cross(c)) / 6.0;
-  }
-  return sum;
-}
 
 struct Frame {
   Vec3 origin;
@@ -68,7 +58,7 @@ std::vector<std::optional<std::size_t>> find_hosts(
   std::vector<double> volumes;
   for (const shape::StructureModel* model : structures) {
     means.push_back(dual_surface(model->hierarchy.levels.back()));
-    volumes.push_back(volume_of(means.back()));
+    volumes.push_back(volume(means.back()));
   }
   std::vector<std::optional<std::size_t>> hosts(structures.size());
   for (std::size_t layer = 0; layer < structures.size(); ++layer) {

@@ -148,21 +148,23 @@ Body placed_body(const shape::StructureModel& model, Points placed) {
 class Hip {
  public:
   Hip(std::vector<PreparedImage> images, const shape::Atlas& atlas, const SegmentOptions& options)
-      : images_(std::move(images)), options_(options) {
-    for (const std::string& name : options.structures) {
-      models_.push_back(&shape::structure(atlas, name));
-    }
-    hosts_ = find_hosts(models_);
+      : images_(std::move(images)), atlas_(atlas), options_(options) {
+    choose_models();
     bodies_.resize(models_.size());
   }
 
-  void segment_bones(const ThinPlateSpline& place, const Monitor& monitor) {
+  void segment_bones(const shape::Landmarks& landmarks, const Monitor& monitor) {
     std::vector<std::size_t> numbers;
-    std::vector<Body> bones;
+    std::vector<const shape::StructureModel*> models;
     for (std::size_t s = 0; s < models_.size(); ++s) {
       if (hosts_[s]) continue;
       numbers.push_back(s);
-      bones.push_back(placed_body(*models_[s], place(models_[s]->hierarchy.levels.back().points)));
+      models.push_back(models_[s]);
+    }
+    std::vector<Body> bones;
+    const auto placed = place_by_landmarks(models, landmarks, atlas_, options_.landmark_error);
+    for (std::size_t b = 0; b < models.size(); ++b) {
+      bones.push_back(placed_body(*models[b], placed[b]));
     }
     const auto resolutions = bone_resolutions(options_.search_range);
     for (PreparedImage& image : images_) {
@@ -181,7 +183,7 @@ class Hip {
       if (!hosts_[s]) continue;
       const Body& host = bodies_[*hosts_[s]];
       const TriMesh mean = dual_surface(host.model->hierarchy.levels.back());
-      TriMesh now = dual_surface(finest_mesh(host));
+      TriMesh now = surface_mesh(host);
       Body layer = placed_body(
           *models_[s], carried_points(models_[s]->hierarchy.levels.back().points, mean, now));
       layer.seat = seated_vertices(*models_[s], mean);
@@ -193,7 +195,7 @@ class Hip {
     // no layer enters any bone
     Obstacles bones;
     for (std::size_t s = 0; s < models_.size(); ++s) {
-      if (!hosts_[s]) bones.push_back(dual_surface(finest_mesh(bodies_[s])));
+      if (!hosts_[s]) bones.push_back(surface_mesh(bodies_[s]));
     }
     update_through(layers, layer_resolutions(), images_,
                    std::vector<Obstacles>(layers.size(), bones), seats, options_, monitor);
@@ -204,8 +206,33 @@ class Hip {
   const std::vector<PreparedImage>& images() const { return images_; }
   bool is_bone(std::size_t s) const { return !hosts_[s].has_value(); }
 
+  /// Whether the caller asked for it, or only something that lies on it needs it.
+  bool is_asked_for(std::size_t s) const {
+    const auto& names = options_.structures;
+    return std::find(names.begin(), names.end(), models_[s]->name) != names.end();
+  }
+
  private:
+  /// The structures asked for and the ones they lie on.
+  void choose_models() {
+    std::vector<const shape::StructureModel*> all;
+    for (const shape::StructureModel& model : atlas_.structures) all.push_back(&model);
+    const auto hosts = find_hosts(all);
+    std::set<std::string> wanted;
+    for (const std::string& name : options_.structures) {
+      wanted.insert(shape::structure(atlas_, name).name);
+    }
+    for (std::size_t s = 0; s < all.size(); ++s) {
+      if (wanted.contains(all[s]->name) && hosts[s]) wanted.insert(all[*hosts[s]]->name);
+    }
+    for (const shape::StructureModel* model : all) {
+      if (wanted.contains(model->name)) models_.push_back(model);
+    }
+    hosts_ = find_hosts(models_);
+  }
+
   std::vector<PreparedImage> images_;
+  const shape::Atlas& atlas_;
   const SegmentOptions& options_;
   std::vector<const shape::StructureModel*> models_;
   std::vector<std::optional<std::size_t>> hosts_;
@@ -216,6 +243,7 @@ SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& optio
   SegmentResult result;
   result.quality = 1.0;
   for (std::size_t s = 0; s < hip.bodies().size(); ++s) {
+    if (!hip.is_asked_for(s)) continue;
     const Body& body = hip.bodies()[s];
     const StructureQuality quality = quality_of(body);
     result.structures[body.model->name] = quality;
@@ -251,10 +279,8 @@ SegmentResult segment(const std::vector<Volume>& volumes, const shape::Atlas& at
   }
   shape::Landmarks ours = landmarks_of_side(landmarks, atlas, side);
   if (side == Side::left) ours = mirrored(ours);
-  const ThinPlateSpline place = place_by_landmarks(ours, atlas, options.landmark_error);
-
   Hip hip(std::move(images), atlas, options);
-  hip.segment_bones(place, part_of(monitor, "segment bones", 0.0, 0.7));
+  hip.segment_bones(ours, part_of(monitor, "segment bones", 0.0, 0.7));
   hip.segment_layers(part_of(monitor, "segment cartilages", 0.7, 1.0));
   return make_result(hip, side, options);
 }

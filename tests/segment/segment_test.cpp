@@ -61,9 +61,7 @@ double error_of(const SegmentResult& result) {
 std::string text_of_failure(const std::vector<Volume>& volumes, const shape::Landmarks& marks,
                             const SegmentOptions& o) {
   try {
-    const SegmentResult r = segment(volumes, atlas(), Side::right, marks, o);
-    printf("q %g c %g res %g\n", r.quality, r.structures.at("egg").correlation,
-           r.structures.at("egg").residual);
+    segment(volumes, atlas(), Side::right, marks, o);
   } catch (const Error& error) {
     return error.what();
   }

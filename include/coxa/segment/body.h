@@ -20,6 +20,12 @@ struct Body {
 /// The finest level's topology with the body's positions.
 SimplexMesh finest_mesh(const Body& body);
 
+/// The body's surface, a vertex per face of its finest mesh.
+///
+/// The fitted shape's dual surface, moved by the body's displacement from it: exact for smooth
+/// displacements, while the dual of the body's own positions would blow up what noise they carry.
+TriMesh surface_mesh(const Body& body);
+
 /// Positions of a level's vertices that belong to finest positions `fine`: the level's mean shape
 /// at `pose`, moved by the mean displacement of the fine vertices that follow each coarse one.
 /// (Means of positions would shrink.)

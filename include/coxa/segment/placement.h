@@ -1,6 +1,5 @@
 #pragma once
 
-#include <coxa/geom/thin_plate_spline.h>
 #include <coxa/image/volume.h>
 #include <coxa/shape/atlas.h>
 
@@ -19,13 +18,20 @@ shape::Landmarks mirrored(const shape::Landmarks& landmarks);
 shape::Landmarks landmarks_of_side(const shape::Landmarks& given, const shape::Atlas& atlas,
                                    Side side);
 
-/// Map from the atlas frame to the image by landmarks of a right hip.
+/// Where landmarks of a right hip put the atlas' bones: every bone by the similarity of the
+/// landmarks that belong to it, since a femur turns in its socket, then all by one thin-plate
+/// spline through what is left of the misfits.
 ///
-/// @param landmark_error mm; larger values let the spline pass landmarks by, and bend less
+/// A landmark belongs to the bone it is in or nearest to; one deep inside a bone and near another
+/// is a joint centre and belongs to both. A bone with fewer than three takes all landmarks.
+/// @param bones          models whose mean shapes are to be placed
+/// @param landmark_error mm; larger values let the spline pass landmarks by
+/// @returns per bone, its finest mean points placed in the image
 /// @throws Error bad_input if fewer than six are known to the atlas, if they lie in a plane, if
 /// they fit the other
 ///         side better, or fit the atlas so badly that names or units must be wrong
-ThinPlateSpline place_by_landmarks(const shape::Landmarks& landmarks, const shape::Atlas& atlas,
-                                   double landmark_error);
+std::vector<Points> place_by_landmarks(const std::vector<const shape::StructureModel*>& bones,
+                                       const shape::Landmarks& landmarks, const shape::Atlas& atlas,
+                                       double landmark_error);
 
 }  // namespace coxa::segment

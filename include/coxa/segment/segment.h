@@ -38,7 +38,7 @@ struct SegmentOptions {
   bool correct_bias = true;  ///< take a slow field of brightness out of each image first
   std::optional<std::string> contrast =
       {};                         ///< the atlas' profiles to use; none: the best fitting of them
-  double minimum_quality = 0.25;  ///< in [0, 1]: below it the result is refused with below_quality
+  double minimum_quality = 0.4;  ///< in [0, 1]: below it the result is refused with below_quality
 };
 
 /// How well one structure was found.
