@@ -20,6 +20,12 @@ class ElementAssembly {
 
   Index n_elements() const { return n_elements_; }
   int n_points() const { return n_points_; }
+  /// Number of integration point q of element e among all, and how many there are.
+  std::size_t point(Index e, int q) const {
+    return static_cast<std::size_t>(e) * static_cast<std::size_t>(n_points_) +
+           static_cast<std::size_t>(q);
+  }
+  std::size_t n_all_points() const { return weight_.size(); }
   /// Reference volume of integration point q of element e.
   double weight(Index e, int q) const { return weight_[point(e, q)]; }
   int n_nodes() const { return n_nodes_; }
@@ -33,16 +39,24 @@ class ElementAssembly {
   void set_offsets(const Points& offset);
   Points node_positions(const VecX& x) const;
 
-  /// Deformation gradient in material axes. `moving` is false for velocities, which have no offset.
-  Mat3 gradient_of(const VecX& x, Index e, int q, bool moving = true) const {
+  /// Deformation gradient in material axes.
+  Mat3 gradient_of(const VecX& x, Index e, int q) const {
     Mat3 F = Mat3::Zero();
     for (int a = 0; a < n_nodes_; ++a) {
       const std::size_t k = corner(e, a);
-      Vec3 position = x.segment<3>(3 * Eigen::Index{scatter_.particle(k)});
-      if (moving) position += offset_.row(node_[k]).transpose();
+      const Vec3 position =
+          x.segment<3>(3 * Eigen::Index{scatter_.particle(k)}) + offset_.row(node_[k]).transpose();
       F += position * shape_gradient(e, q, a).transpose();
     }
     return F;
+  }
+  /// Its rate of change at velocities v.
+  Mat3 rate_of(const VecX& v, Index e, int q) const {
+    Mat3 rate = Mat3::Zero();
+    for (int a = 0; a < n_nodes_; ++a)
+      rate += v.segment<3>(3 * Eigen::Index{scatter_.particle(corner(e, a))}) *
+              shape_gradient(e, q, a).transpose();
+    return rate;
   }
 
   /// Adds -weight P r to each node, P = first_piola(e, q).
@@ -86,10 +100,6 @@ class ElementAssembly {
   }
 
  private:
-  std::size_t point(Index e, int q) const {
-    return static_cast<std::size_t>(e) * static_cast<std::size_t>(n_points_) +
-           static_cast<std::size_t>(q);
-  }
   std::size_t corner(Index e, int a) const {
     return static_cast<std::size_t>(e) * static_cast<std::size_t>(n_nodes_) +
            static_cast<std::size_t>(a);

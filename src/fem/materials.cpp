@@ -1,11 +1,11 @@
 #include <coxa/core/error.h>
 #include <coxa/fem/material.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <cmath>
 
+#include "mode_tensors.h"
 #include "principal_material.h"
 
 namespace coxa::fem {
@@ -27,11 +27,7 @@ class StVenantKirchhoff : public Material {
   Mat3 first_piola(const Mat3& F) const override { return F * second_piola(F); }
   Mat9 tangent(const Mat3& F, Tangent kind) const override {
     Mat3 S = second_piola(F);
-    if (kind == Tangent::positive) {
-      const Eigen::SelfAdjointEigenSolver<Mat3> solver(S);
-      S = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
-          solver.eigenvectors().transpose();
-    }
+    if (kind == Tangent::positive) S = tensile_part(S);
     // dP = dF S + lambda tr(F^T dF) F + mu (F F^T dF + F dF^T F)
     const Mat3 FFt = F * F.transpose();
     Mat9 C;
