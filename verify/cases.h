@@ -23,6 +23,9 @@ Rows hertz();                 // f
 Rows compressible_layer();    // g
 Rows incompressible_layer();  // h
 Rows cook();                  // l
+Rows prony();                 // m
 Rows energy();                // n
+Rows curves();                // p
+Rows viscosity();             // q
 
 }  // namespace coxa::verify

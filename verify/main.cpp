@@ -30,7 +30,10 @@ const std::vector<Case>& cases() {
       {'g', "rigid sphere on a bonded compressible layer", compressible_layer},
       {'h', "rigid sphere on a bonded nearly incompressible layer", incompressible_layer},
       {'l', "Cook's membrane", cook},
-      {'n', "energy and frequency of free vibration", energy}};
+      {'m', "relaxation by a Prony series", prony},
+      {'n', "energy and frequency of free vibration", energy},
+      {'p', "strain-stress curves, unrotated and rotated mode", curves},
+      {'q', "viscosity by rate curves", viscosity}};
   return all;
 }
 
