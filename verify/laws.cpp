@@ -8,6 +8,7 @@
 #include <coxa/fem/viscoelastic_force.h>
 #include <coxa/fem/viscous_force.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -160,9 +161,11 @@ Rows viscosity() {
   VecX load = VecX::Zero(cube.particles.x.size());
   const auto faces = faces_where(fem::test::with_mid_nodes(cube.mesh),
                                  [](const Vec3& X) { return X[0] > 1.0 - 1e-9; });
-  for (Eigen::Index f = 0; f < faces.rows(); ++f)
-    for (int a = 0; a < 3; ++a)
-      load[3 * faces(f, a)] -= pressure / static_cast<double>(faces.rows()) / 3.0;
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    const auto corner = [&](int a) { return Vec3(cube.mesh.points.row(faces(f, a))); };
+    const double area = 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+    for (int a = 0; a < 3; ++a) load[3 * faces(f, a)] -= pressure * area / 3.0;
+  }
   for (Index i = 0; i < cube.mesh.n_vertices(); ++i)
     constraints.add(i, Vec3(cube.on_face(i, 0, 0.0) ? 0 : 1, 0, 0).asDiagonal(), Vec3::Zero());
   const dynamics::ConstantForce weight(load);
