@@ -86,14 +86,14 @@ void update_sizes(SheetGrid& grid, const SizeBasis& basis, const CellSizing& siz
   for (Index v = 0; v < grid.n_nodes(); ++v) {
     const double wanted =
         std::clamp(sizing.per_thickness * basis.thickness[at(v)], sizing.smallest, sizing.largest);
-    const double at_bend = std::max(basis.bend[at(v)], kSmallestShare * wanted);
-    grid.size[at(v)] = std::min({wanted, at_bend, basis.rim[at(v)]});
+    const double at_bend = std::max(sizing.slack * basis.bend[at(v)], kSmallestShare * wanted);
+    grid.size[at(v)] = std::min({wanted, at_bend, sizing.slack * basis.rim[at(v)]});
   }
   const auto edges = grid.edges();
   for (bool changed = true; changed;) {
     changed = false;
     for (const auto& [a, b] : edges) {
-      const double reach = sizing.options.gradation * (grid.x[at(a)] - grid.x[at(b)]).norm();
+      const double reach = sizing.gradation * (grid.x[at(a)] - grid.x[at(b)]).norm();
       for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}}) {
         if (grid.size[at(to)] > grid.size[at(from)] + reach + 1e-9) {
           grid.size[at(to)] = grid.size[at(from)] + reach;
@@ -107,7 +107,7 @@ void update_sizes(SheetGrid& grid, const SizeBasis& basis, const CellSizing& siz
 CellSizing sizing_for(SheetGrid& grid, const SizeBasis& basis, const MedialOptions& options) {
   CellSizing sizing{options.cell_per_thickness,
                     std::max(options.smallest_cell, 1e-3 * options.largest_cell),
-                    options.largest_cell, options};
+                    options.largest_cell, 1.0, options.gradation};
   update_sizes(grid, basis, sizing);
   const double typical = options.cell_per_thickness * median_thickness(grid, basis);
   for (int step = 0; step < kMaxSteps && expected_cells(grid) > options.max_cells; ++step) {
@@ -117,6 +117,7 @@ CellSizing sizing_for(SheetGrid& grid, const SizeBasis& basis, const MedialOptio
       sizing.smallest *= kEnlarge;
       sizing.per_thickness *= kEnlarge;
       sizing.largest *= kEnlarge;
+      sizing.slack *= kEnlarge;
     }
     update_sizes(grid, basis, sizing);
   }

@@ -10,7 +10,8 @@ namespace coxa::medial {
 /// Edge lengths by thickness: options, enlarged where needed to meet the number of cells.
 struct CellSizing {
   double per_thickness, smallest, largest;
-  const MedialOptions& options;
+  double slack = 1.0;  ///< by how much limits at bends and rims were enlarged
+  double gradation;
 };
 
 /// What the place of a node says about the cells around it.

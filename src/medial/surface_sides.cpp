@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kSharpAngle = 0.5;       // rad: edges bent this much hardly bind their triangles
 constexpr double kFacing = 0.3;           // smallest cosine between opposing normals of a sheet
+constexpr double kReach = 4.0;            // times the median thickness: no partner beyond
 constexpr double kRegularisation = 1e-6;  // of the mean diagonal: keeps the factor definite
 constexpr int kInverseIterations = 25;
 
@@ -154,10 +155,35 @@ void absorb_islands(const std::vector<SharedEdge>& edges, const VecX& areas,
   }
 }
 
-bool has_partner(const VecX& x, const std::vector<Opposite>& opposites, Index t) {
-  const Opposite& o = opposites[static_cast<std::size_t>(t)];
-  return o.triangle >= 0 && o.facing > kFacing && (x[t] > 0) != (x[o.triangle] > 0);
+// median over the area of the distance to the opposite triangle, where the two face each other
+double median_thickness(const VecX& areas, const std::vector<Opposite>& opposites) {
+  std::vector<std::pair<double, double>> facing;  // distance, area
+  double total = 0.0;
+  for (std::size_t t = 0; t < opposites.size(); ++t) {
+    if (opposites[t].triangle < 0 || opposites[t].facing <= kFacing) continue;
+    facing.emplace_back(opposites[t].distance, areas[static_cast<Index>(t)]);
+    total += areas[static_cast<Index>(t)];
+  }
+  std::sort(facing.begin(), facing.end());
+  double sum = 0.0;
+  for (const auto& [distance, area] : facing) {
+    sum += area;
+    if (sum >= 0.5 * total) return distance;
+  }
+  return 0.0;
 }
+
+struct Pairing {
+  const VecX& x;  // the signed mode
+  const std::vector<Opposite>& opposites;
+  double reach;  // mm: what lies further across is no partner (walls that face each other)
+
+  bool has_partner(Index t) const {
+    const Opposite& o = opposites[static_cast<std::size_t>(t)];
+    return o.triangle >= 0 && o.facing > kFacing && o.distance <= reach &&
+           (x[t] > 0) != (x[o.triangle] > 0);
+  }
+};
 
 // a rim triangle without rim neighbours across two of its edges is no wall: its side again
 void drop_specks(const std::vector<SharedEdge>& edges, const std::vector<SideLabel>& sides,
@@ -181,8 +207,8 @@ void drop_specks(const std::vector<SharedEdge>& edges, const std::vector<SideLab
 }
 
 // unpaired triangles reached from the change of sign through unpaired triangles are rim
-void grow_rim(const std::vector<SharedEdge>& edges, const VecX& x,
-              const std::vector<Opposite>& opposites, std::vector<SideLabel>& labels) {
+void grow_rim(const std::vector<SharedEdge>& edges, const Pairing& pairing,
+              std::vector<SideLabel>& labels) {
   std::vector<char> reached(labels.size(), 0);
   const auto at = [](Index t) { return static_cast<std::size_t>(t); };
   const std::vector<SideLabel> before = labels;
@@ -193,14 +219,14 @@ void grow_rim(const std::vector<SharedEdge>& edges, const VecX& x,
     grew = false;
     for (const SharedEdge& e : edges) {
       for (const auto& [from, to] : {std::pair{e.left, e.right}, std::pair{e.right, e.left}}) {
-        if (!reached[at(from)] || reached[at(to)] || has_partner(x, opposites, from)) continue;
+        if (!reached[at(from)] || reached[at(to)] || pairing.has_partner(from)) continue;
         reached[at(to)] = 1;
         grew = true;
       }
     }
   }
   for (std::size_t t = 0; t < labels.size(); ++t) {
-    if (reached[t] && !has_partner(x, opposites, static_cast<Index>(t))) labels[t] = SideLabel::rim;
+    if (reached[t] && !pairing.has_partner(static_cast<Index>(t))) labels[t] = SideLabel::rim;
   }
   drop_specks(edges, before, labels);
 }
@@ -213,7 +239,11 @@ SurfaceSides split_sides(const TriMesh& surface) {
   const std::vector<Opposite> opposites = find_opposites(surface, g);
   const VecX x = signed_mode(g, edges, surface.points, opposites);
 
+  const double thickness = median_thickness(g.areas, opposites);
+  const Pairing pairing{x, opposites, kReach * thickness};
+
   SurfaceSides sides;
+  sides.relative_thickness = thickness / std::sqrt(0.5 * g.areas.sum());
   sides.labels.resize(opposites.size());
   sides.thickness.resize(surface.n_triangles());
   double paired = 0.0;
@@ -221,12 +251,12 @@ SurfaceSides split_sides(const TriMesh& surface) {
     const Opposite& o = opposites[static_cast<std::size_t>(t)];
     sides.labels[static_cast<std::size_t>(t)] = x[t] > 0 ? SideLabel::first : SideLabel::second;
     sides.thickness[t] = o.triangle >= 0 ? o.distance : kNaN;
-    if (has_partner(x, opposites, t)) paired += g.areas[t];
+    if (pairing.has_partner(t)) paired += g.areas[t];
   }
   sides.sheetness = paired / g.areas.sum();
   absorb_islands(edges, g.areas, sides.labels, SideLabel::first);
   absorb_islands(edges, g.areas, sides.labels, SideLabel::second);
-  grow_rim(edges, x, opposites, sides.labels);
+  grow_rim(edges, pairing, sides.labels);
   return sides;
 }
 

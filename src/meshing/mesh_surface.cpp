@@ -17,7 +17,9 @@ namespace {
 
 // below this share of facing area a body is no sheet
 constexpr double kSheet = 0.7;
-constexpr int kSizeTries = 6;
+// above this thickness relative to the width of a face a body is no sheet
+constexpr double kThick = 0.35;
+constexpr int kSizeTries = 8;
 
 void check(const MeshingOptions& o) {
   require(!o.layers || (*o.layers >= 1 && *o.layers <= 8), "layers must be 1 to 8, got ",
@@ -97,9 +99,10 @@ MeshingResult mesh_surface(const TriMesh& surface, const MeshingOptions& options
   check(options);
   require_closed_manifold(surface, "surface to fill with tetrahedra");
   const medial::SurfaceSides sides = medial::split_sides(surface);
-  if (sides.sheetness < kSheet) {
-    fail(ErrorCode::bad_mesh, "the body is no sheet: only ", 100.0 * sides.sheetness,
-         " % of its surface faces another part of it across the body");
+  if (sides.sheetness < kSheet || sides.relative_thickness > kThick) {
+    fail(ErrorCode::bad_mesh, "the body is no sheet: ", 100.0 * sides.sheetness,
+         " % of its surface faces another part of it, at ", sides.relative_thickness,
+         " times the width of a face");
   }
   return mesh_sheet(surface, sides, options, monitor);
 }

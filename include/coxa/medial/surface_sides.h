@@ -15,6 +15,7 @@ enum class SideLabel : std::int8_t { first = 0, second = 1, rim = 2 };
 struct SurfaceSides {
   std::vector<SideLabel> labels;  ///< per triangle
   VecX thickness;  ///< per triangle: inward ray length, mm; NaN where it meets nothing
+  double relative_thickness = 0.0;  ///< median thickness over the square root of half the area
   double sheetness =
       0.0;  ///< share of the area that faces the other side across the body, in [0, 1]
 };
