@@ -59,8 +59,7 @@ struct Hit {
 class Tracer {
  public:
   Tracer(const std::vector<SceneMesh>& scene, const Vec3& centre)
-      // one thread: the tree then does not depend on how threads are scheduled
-      : scene_(scene), centre_(centre), device_(rtcNewDevice("threads=1,set_affinity=0")) {
+      : scene_(scene), centre_(centre), device_(rtcNewDevice("set_affinity=0")) {
     COXA_ASSERT(device_ != nullptr);
     tree_.reset(rtcNewScene(device_.get()));
     rtcSetSceneFlags(tree_.get(), RTC_SCENE_FLAG_ROBUST);

@@ -47,8 +47,7 @@ Image panel_of(const std::vector<SceneMesh>& scene, Camera camera, int panel) {
 }
 
 SceneMesh coloured(const TriMesh& mesh, const VecX& values, const ColourScale& scale) {
-  SceneMesh part{
-      .mesh = mesh, .vertex_values = {}, .triangle_values = {}, .scale = scale, .relief = 0.3};
+  SceneMesh part{.mesh = mesh, .scale = scale, .relief = 0.3};
   if (values.size() == mesh.n_vertices()) {
     part.vertex_values = values;
   } else {
@@ -71,12 +70,8 @@ Image draw_surfaces(const SurfaceSet& surfaces, const SurfacePictureOptions& opt
   Index n_points = 0;
   for (const auto& [name, surface] : surfaces) {
     const bool clear = std::count(options.see_through.begin(), options.see_through.end(), name) > 0;
-    scene.push_back({.mesh = surface.mesh,
-                     .colour = structure_colour(name),
-                     .vertex_values = {},
-                     .triangle_values = {},
-                     .scale = {},
-                     .opacity = clear ? 0.4 : 1.0});
+    scene.push_back(
+        {.mesh = surface.mesh, .colour = structure_colour(name), .opacity = clear ? 0.4 : 1.0});
     names.push_back(name);
     n_points += surface.mesh.n_vertices();
   }

@@ -23,8 +23,8 @@ Colour map_colour(ColourMap map, double share);
 struct ColourScale {
   ColourMap map = ColourMap::viridis;
   double low = 0.0;
-  double high = 1.0;  ///< > low
-  std::string label;  ///< with unit, for example "pressure [MPa]"
+  double high = 1.0;       ///< > low
+  std::string label = {};  ///< with unit, for example "pressure [MPa]"
 };
 Colour scale_colour(const ColourScale& scale, double value);
 

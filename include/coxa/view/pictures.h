@@ -15,9 +15,10 @@ struct SliceOptions {
   int panel = 420;              ///< pixels, >= 60: side of one of the three panels
   double field = 150.0;         ///< mm, > 0: side of the region shown around the centre
   double line_thickness = 1.6;  ///< pixels, > 0
-  std::optional<double>
-      window_low;  ///< value shown black; by default the 1st percentile in the volume
-  std::optional<double> window_high;  ///< value shown white; by default the 99.5th
+  /// Value shown black; by default the 1st percentile in the volume.
+  std::optional<double> window_low = {};
+  /// Value shown white; by default the 99.5th percentile.
+  std::optional<double> window_high = {};
 };
 
 /// Axial, coronal and sagittal slices through a point side by side, with the outlines of the

@@ -12,11 +12,11 @@ namespace coxa::view {
 struct SceneMesh {
   TriMesh mesh;
   Colour colour{200, 200, 200};
-  VecX vertex_values;    ///< V values, interpolated, or empty
-  VecX triangle_values;  ///< T values, or empty; used where vertex_values is empty
-  ColourScale scale;     ///< for values; NaN shows grey
-  double opacity = 1.0;  ///< in [0, 1]
-  double relief = 0.65;  ///< in [0, 1]: brightness lost where the surface is seen edge-on
+  VecX vertex_values = {};    ///< V values, interpolated, or empty
+  VecX triangle_values = {};  ///< T values, or empty; used where vertex_values is empty
+  ColourScale scale = {};     ///< for values; NaN shows grey
+  double opacity = 1.0;       ///< in [0, 1]
+  double relief = 0.65;       ///< in [0, 1]: brightness lost where the surface is seen edge-on
 };
 
 /// Parallel projection: no foreshortening, sizes can be measured in the picture.
