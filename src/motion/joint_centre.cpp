@@ -7,6 +7,7 @@
 #include <coxa/mesh/measures.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

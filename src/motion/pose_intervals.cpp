@@ -64,7 +64,9 @@ Gains rotation_gains(const Points& x, const MatX& weights) {
 MatX fit_weights(const MatX& covariance, PoseMethod method) {
   const Eigen::Index K = covariance.rows();
   const MatX W = covariance.llt().solve(MatX::Identity(K, K));
-  if (method == PoseMethod::ball_joint || method == PoseMethod::ball_joint_ml) return W;
+  const bool free_shift = method == PoseMethod::rigid || method == PoseMethod::paper ||
+                          method == PoseMethod::point_cluster;
+  if (!free_shift) return W;
   const VecX row_sums = W.rowwise().sum();
   return W - row_sums * row_sums.transpose() / row_sums.sum();
 }

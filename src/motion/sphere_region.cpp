@@ -7,6 +7,7 @@
 #include <coxa/mesh/topology.h>
 #include <coxa/mesh/vertex_normals.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>

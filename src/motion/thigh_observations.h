@@ -3,6 +3,7 @@
 #include <coxa/core/types.h>
 #include <coxa/geom/rigid_transform.h>
 
+#include <string>
 #include <vector>
 
 namespace coxa::motion {
@@ -24,7 +25,8 @@ struct PoseEstimate {
   std::vector<Mat3> R_PF;   ///< per frame
   std::vector<Vec3> head;   ///< per frame, mm: femoral head from the joint centre, pelvis axes
   std::vector<bool> valid;  ///< per frame
-  MatX covariance;  ///< K×K, mm² per axis: artefact of the markers, common to the three axes
+  MatX covariance;   ///< K×K, mm² per axis: artefact of the markers, common to the three axes
+  std::string note;  ///< what the user should know about how it was found; may be empty
   int iterations = 0;
   bool converged = true;
 };
@@ -41,6 +43,10 @@ PoseEstimate estimate_point_cluster(const ThighObservations& thigh);
 PoseEstimate estimate_ball_joint(const ThighObservations& thigh, const MatX& covariance);
 /// The covariance diag(v) that makes the observed residuals most likely, and the poses with it.
 PoseEstimate estimate_ball_joint_ml(const ThighObservations& thigh, double floor_sd);
+
+/// Ball joint with marker variances and a shift that all markers share; which of two weightings,
+/// the trial decides.
+PoseEstimate estimate_coxa(const ThighObservations& thigh, double floor_sd);
 
 /// Residuals R^T y - x of frame f, K×3, mm; NaN rows where a marker was not seen.
 Points residuals_of(const ThighObservations& thigh, Index frame, const Mat3& R_PF,

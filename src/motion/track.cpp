@@ -35,6 +35,8 @@ PoseEstimate estimate_poses(const ThighObservations& thigh, const TrackOptions& 
       return estimate_ball_joint(thigh, MatX::Identity(K, K));
     case PoseMethod::ball_joint_ml:
       return estimate_ball_joint_ml(thigh, options.measurement_sd);
+    case PoseMethod::coxa:
+      return estimate_coxa(thigh, options.measurement_sd);
   }
   COXA_ASSERT(false);
   return {};
@@ -93,6 +95,8 @@ std::string_view name(PoseMethod method) {
       return "ball_joint";
     case PoseMethod::ball_joint_ml:
       return "ball_joint_ml";
+    case PoseMethod::coxa:
+      return "coxa";
   }
   return "unknown";
 }
@@ -117,6 +121,7 @@ TrackResult track_in_detail(const MarkerData& markers, const HipModel& model,
   monitor.progress("track", 0.2);
 
   PoseEstimate estimate = estimate_poses(recording.thigh, options);
+  if (!estimate.note.empty()) motion.warnings.push_back(estimate.note);
   update_unsolved_frames(estimate, motion.warnings);
   result.report = {.converged = estimate.converged,
                    .iterations = estimate.iterations,

@@ -20,18 +20,19 @@ enum class PoseMethod {
   point_cluster,  ///< per frame: principal axes of the cluster, weights that keep its moments
                   ///< constant
   ball_joint,     ///< per frame: rotation about the joint centre, equal weights
-  ball_joint_ml   ///< the same, each marker's variance estimated by maximum likelihood over the
+  ball_joint_ml,  ///< the same, each marker's variance estimated by maximum likelihood over the
                   ///< trial
+  coxa  ///< ball joint whose markers share part of their artefact, weights chosen by the trial
 };
-inline constexpr PoseMethod kAllPoseMethods[] = {PoseMethod::paper, PoseMethod::rigid,
+inline constexpr PoseMethod kAllPoseMethods[] = {PoseMethod::paper,         PoseMethod::rigid,
                                                  PoseMethod::point_cluster, PoseMethod::ball_joint,
-                                                 PoseMethod::ball_joint_ml};
+                                                 PoseMethod::ball_joint_ml, PoseMethod::coxa};
 std::string_view name(PoseMethod method);
 /// @throws Error usage naming the methods there are
 PoseMethod pose_method(std::string_view name);
 
 struct TrackOptions {
-  PoseMethod method = PoseMethod::ball_joint_ml;
+  PoseMethod method = PoseMethod::coxa;
   double measurement_sd = 0.5;  ///< mm, > 0, of one marker coordinate as the cameras see it
   double joint_translation_sd =
       0.5;  ///< mm, >= 0, of the head in the socket per axis; into the intervals

@@ -1,0 +1,266 @@
+#include <coxa/motion/calibration.h>
+
+#include <coxa/core/error.h>
+#include <coxa/geom/fits.h>
+#include <coxa/motion/estimated_centre.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace coxa::motion {
+namespace {
+
+using LabelledPoints = std::map<std::string, Vec3>;
+
+struct PelvisMarkers {
+  std::string asis_right, asis_left;
+  std::vector<std::string> back;  // one sacral marker, or the PSIS that there are
+  std::vector<std::string> all() const {
+    std::vector<std::string> labels = {asis_right, asis_left};
+    labels.insert(labels.end(), back.begin(), back.end());
+    return labels;
+  }
+};
+
+std::string all_labels(const MarkerData& markers) {
+  std::string text;
+  for (const std::string& label : markers.labels) text += (text.empty() ? "" : ", ") + label;
+  return text;
+}
+
+const std::string& only(const MarkerRoles& roles, MarkerRole role, const MarkerData& markers) {
+  const auto it = roles.find(role);
+  require(it != roles.end(), "no marker for the role '", name(role),
+          "'; give its label in the marker map. The recording has: ", all_labels(markers));
+  return it->second.front();
+}
+
+PelvisMarkers pelvis_markers(const MarkerRoles& roles, const MarkerData& markers) {
+  PelvisMarkers pelvis{only(roles, MarkerRole::asis_right, markers),
+                       only(roles, MarkerRole::asis_left, markers),
+                       {}};
+  const auto right = roles.find(MarkerRole::psis_right), left = roles.find(MarkerRole::psis_left);
+  if (right != roles.end() && left != roles.end()) {
+    pelvis.back = {right->second.front(), left->second.front()};
+  } else {
+    pelvis.back = {only(roles, MarkerRole::sacrum, markers)};
+  }
+  return pelvis;
+}
+
+Vec3 at(const MarkerData& markers, const std::string& label, Index frame) {
+  return markers.trajectories[static_cast<std::size_t>(*find_marker(markers, label))].row(frame);
+}
+
+// ISB pelvis frame with its origin midway between the ASIS
+RigidTransform pelvis_pose(const MarkerData& markers, const PelvisMarkers& pelvis, Index frame) {
+  const Vec3 right = at(markers, pelvis.asis_right, frame),
+             left = at(markers, pelvis.asis_left, frame);
+  Vec3 back = Vec3::Zero();
+  for (const std::string& label : pelvis.back)
+    back += at(markers, label, frame) / static_cast<double>(pelvis.back.size());
+  return {pelvis_axes(right, left, back), 0.5 * (right + left)};
+}
+
+bool all_seen(const MarkerData& markers, const std::vector<std::string>& labels, Index frame) {
+  return std::all_of(labels.begin(), labels.end(), [&](const std::string& label) {
+    return seen(markers.trajectories[static_cast<std::size_t>(*find_marker(markers, label))],
+                frame);
+  });
+}
+
+// mean positions in the pelvis over the neutral frames in which the pelvis is seen; each label by
+// its own count
+LabelledPoints mean_positions(const MarkerData& markers, const PelvisMarkers& pelvis,
+                              const std::vector<std::string>& labels, Index begin, Index end) {
+  LabelledPoints sums;
+  std::map<std::string, double> counts;
+  for (Index frame = begin; frame < end; ++frame) {
+    if (!all_seen(markers, pelvis.all(), frame)) continue;
+    const RigidTransform X_PL = pelvis_pose(markers, pelvis, frame).inverse();
+    for (const std::string& label : labels) {
+      const Vec3 p = at(markers, label, frame);
+      if (!p.allFinite()) continue;
+      sums.try_emplace(label, Vec3::Zero()).first->second += X_PL * p;
+      counts[label] += 1.0;
+    }
+  }
+  for (auto& [label, sum] : sums) sum /= counts[label];
+  return sums;
+}
+
+// estimates of the joint centre from regression and, where the movement allows it, from function
+std::vector<JointCentre> estimate_centres(const MarkerData& markers, const PelvisMarkers& pelvis,
+                                          const LabelledPoints& means,
+                                          const std::vector<std::string>& thigh,
+                                          const CalibrationOptions& options,
+                                          std::vector<std::string>& warnings) {
+  const double width = (means.at(pelvis.asis_right) - means.at(pelvis.asis_left)).norm();
+  Vec3 back = Vec3::Zero();
+  for (const std::string& label : pelvis.back)
+    back += means.at(label) / static_cast<double>(pelvis.back.size());
+  const double depth =
+      (0.5 * (means.at(pelvis.asis_right) + means.at(pelvis.asis_left)) - back).norm();
+  std::vector<JointCentre> centres = {harrington_centre(width, depth, options.side),
+                                      bell_centre(width, options.side)};
+
+  std::vector<RigidTransform> X_PP, X_PF;
+  std::vector<Points> in_pelvis(thigh.size(), Points::Constant(markers.n_frames(), 3, kNaN));
+  Points x(static_cast<Eigen::Index>(thigh.size()), 3);
+  for (std::size_t k = 0; k < thigh.size(); ++k)
+    x.row(static_cast<Eigen::Index>(k)) = means.at(thigh[k]);
+  for (Index frame = 0; frame < markers.n_frames(); ++frame) {
+    if (!all_seen(markers, pelvis.all(), frame)) continue;
+    const RigidTransform X_PL = pelvis_pose(markers, pelvis, frame).inverse();
+    Points y(x.rows(), 3);
+    for (std::size_t k = 0; k < thigh.size(); ++k) {
+      y.row(static_cast<Eigen::Index>(k)) = X_PL * at(markers, thigh[k], frame);
+      in_pelvis[k].row(frame) = y.row(static_cast<Eigen::Index>(k));
+    }
+    if (!y.allFinite() || thigh.size() < 3) continue;
+    X_PP.push_back({});
+    X_PF.push_back(fit_rigid(x, y));
+  }
+  try {
+    if (X_PF.size() >= 10) centres.push_back(score_centre(X_PP, X_PF));
+    centres.push_back(sphere_centre(in_pelvis));
+  } catch (const Error& error) {
+    warnings.push_back(std::string("no functional joint centre: ") + error.what());
+  }
+  return centres;
+}
+
+const char* definition_of(CentreSource source) {
+  switch (source) {
+    case CentreSource::harrington:
+      return "harrington";
+    case CentreSource::bell:
+      return "bell";
+    case CentreSource::score:
+      return "score";
+    case CentreSource::functional_sphere:
+      return "functional_sphere";
+  }
+  return "unknown";
+}
+
+JointCentre chosen_centre(const std::vector<JointCentre>& centres,
+                          const CalibrationOptions& options) {
+  if (options.joint_centre_pelvis) {
+    JointCentre given;
+    given.definition = "given";
+    given.centre = *options.joint_centre_pelvis;
+    given.interval = 1.96 * options.joint_centre_sd;
+    return given;
+  }
+  const char* wanted = definition_of(options.centre);
+  const auto it = std::find_if(centres.begin(), centres.end(),
+                               [&](const JointCentre& c) { return c.definition == wanted; });
+  require(it != centres.end(), "no joint centre by '", wanted, "' from this recording");
+  return *it;
+}
+
+// ISB femur axes in the pelvis from joint centre and knee markers
+Mat3 femur_axes_from_knee(const MarkerRoles& roles, const LabelledPoints& means, const Vec3& centre,
+                          const CalibrationOptions& options, std::vector<std::string>& warnings) {
+  const auto lateral = roles.find(MarkerRole::knee_lateral),
+             medial = roles.find(MarkerRole::knee_medial);
+  require(lateral != roles.end() && means.contains(lateral->second.front()),
+          "no marker on the lateral epicondyle is seen in the neutral frames; give its label as "
+          "'knee_lateral'");
+  const Vec3 outer = means.at(lateral->second.front());
+  if (medial != roles.end() && means.contains(medial->second.front())) {
+    return femur_axes(centre, means.at(medial->second.front()), outer, options.side);
+  }
+  warnings.push_back(
+      join_text("no medial knee marker: the knee's axis is taken parallel to the pelvis' "
+                "left-right axis in the neutral frames, ",
+                options.knee_half_width, " mm from the lateral marker to its middle"));
+  const double inwards = options.side == Side::right ? -1.0 : 1.0;
+  return femur_axes(centre, outer + Vec3(0, 0, 2.0 * inwards * options.knee_half_width), outer,
+                    options.side);
+}
+
+}  // namespace
+
+Calibration calibrate(const MarkerData& markers, const CalibrationOptions& options) {
+  const Index end = options.end_frame.value_or(markers.n_frames());
+  require(0 <= options.first_frame && options.first_frame < end && end <= markers.n_frames(),
+          "calibration frames [", options.first_frame, ", ", end,
+          ") are not in the recording, which has ", markers.n_frames(), " frames");
+  require(options.knee_half_width > 0, "knee_half_width must be above 0 mm, got ",
+          options.knee_half_width);
+  const MarkerRoles roles =
+      find_roles(markers, options.map.empty() ? default_marker_map(options.side) : options.map);
+  const PelvisMarkers pelvis = pelvis_markers(roles, markers);
+  std::vector<std::string> thigh =
+      roles.contains(MarkerRole::thigh) ? roles.at(MarkerRole::thigh) : std::vector<std::string>{};
+  for (const MarkerRole role : {MarkerRole::knee_lateral, MarkerRole::knee_medial}) {
+    if (roles.contains(role)) thigh.push_back(roles.at(role).front());
+  }
+  std::vector<std::string> labels = pelvis.all();
+  labels.insert(labels.end(), thigh.begin(), thigh.end());
+  const LabelledPoints means = mean_positions(markers, pelvis, labels, options.first_frame, end);
+  require(means.contains(pelvis.asis_right),
+          "the pelvis markers are never all seen in the neutral frames");
+  std::erase_if(thigh, [&](const std::string& label) { return !means.contains(label); });
+
+  Calibration result;
+  result.centres = estimate_centres(markers, pelvis, means, thigh, options, result.warnings);
+  const JointCentre centre = chosen_centre(result.centres, options);
+  const Mat3 R_PF = femur_axes_from_knee(roles, means, centre.centre, options, result.warnings);
+  HipModel& model = result.model;
+  model.side = options.side;
+  model.joint_centre_pelvis = centre.centre;
+  for (const std::string& label : pelvis.all()) model.pelvis_markers[label] = means.at(label);
+  for (const std::string& label : thigh)
+    model.thigh_markers[label] = R_PF.transpose() * (means.at(label) - centre.centre);
+  model.calibration_frame = options.first_frame;
+  model.marker_sd = options.marker_sd;
+  model.pelvis_centre_sd = centre.interval / 1.96;
+  model.source = join_text("anatomical markers; joint centre: ", centre.definition);
+  check_model(model);
+  return result;
+}
+
+Registration register_image(const std::map<std::string, Vec3>& in_image,
+                            const std::map<std::string, Vec3>& in_pelvis) {
+  std::vector<Vec3> a, b;
+  for (const auto& [label, p] : in_image) {
+    const auto it = in_pelvis.find(label);
+    if (it == in_pelvis.end()) continue;
+    a.push_back(p);
+    b.push_back(it->second);
+  }
+  require(a.size() >= 3, "only ", a.size(),
+          " pelvis landmarks are known both in the image and on the markers; 3 are needed");
+  Points from(static_cast<Eigen::Index>(a.size()), 3), to(from.rows(), 3);
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    from.row(static_cast<Eigen::Index>(k)) = a[k];
+    to.row(static_cast<Eigen::Index>(k)) = b[k];
+  }
+  Registration result;
+  result.X_PI = fit_rigid(from, to);
+  result.n_landmarks = static_cast<Index>(a.size());
+  result.rms = std::sqrt((transformed(from, result.X_PI) - to).squaredNorm() /
+                         static_cast<double>(a.size()));
+  return result;
+}
+
+std::map<std::string, Vec3> pelvis_landmarks(const HipModel& model, const MarkerMap& map) {
+  std::map<std::string, Vec3> landmarks;
+  for (const MarkerRole role : {MarkerRole::asis_left, MarkerRole::asis_right,
+                                MarkerRole::psis_left, MarkerRole::psis_right}) {
+    const auto patterns = map.find(role);
+    if (patterns == map.end()) continue;
+    for (const auto& [label, p] : model.pelvis_markers) {
+      const bool matches =
+          std::any_of(patterns->second.begin(), patterns->second.end(),
+                      [&](const std::string& pattern) { return label_matches(label, pattern); });
+      if (matches) landmarks.emplace(name(role), p);
+    }
+  }
+  return landmarks;
+}
+
+}  // namespace coxa::motion
