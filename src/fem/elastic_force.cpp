@@ -30,8 +30,11 @@ void ElasticForce::add_jacobian(const VecX& x, const VecX&, double stiffness_fac
                                 solve::BlockMatrix& A) const {
   if (stiffness_factor == 0.0) return;
   assembly_->add_jacobian(
-      [&](Index e, int q) { return material_->tangent(assembly_->gradient_of(x, e, q), tangent_); },
-      stiffness_factor, A);
+      [&](Index e, int q, double weight, Mat3* blocks) {
+        material_->add_blocks(assembly_->gradient_of(x, e, q), tangent_, stiffness_factor * weight,
+                              assembly_->shape_gradients(e, q), blocks);
+      },
+      A);
 }
 
 double ElasticForce::energy(const VecX& x) const {

@@ -70,18 +70,4 @@ Points ElementAssembly::node_positions(const VecX& x) const {
   return positions;
 }
 
-void ElementAssembly::add_point_blocks(Index e, int q, const Mat9& C, Mat3* blocks) const {
-  for (int b = 0; b < n_nodes_; ++b) {
-    // C contracted with the gradient of node b: three 3×3 parts, one for each column of F
-    const Vec3& rb = shape_gradient(e, q, b);
-    const Eigen::Matrix<double, 9, 3> D =
-        C.leftCols<3>() * rb[0] + C.middleCols<3>(3) * rb[1] + C.rightCols<3>() * rb[2];
-    for (int a = 0; a <= b; ++a) {
-      const Vec3& ra = shape_gradient(e, q, a);
-      blocks[Scatter::block_number(n_nodes_, a, b)] +=
-          ra[0] * D.topRows<3>() + ra[1] * D.middleRows<3>(3) + ra[2] * D.bottomRows<3>();
-    }
-  }
-}
-
 }  // namespace coxa::fem

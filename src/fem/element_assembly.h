@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "scatter.h"
@@ -73,17 +74,21 @@ class ElementAssembly {
     scatter_.gather_force(part.get(), force);
   }
 
-  /// Adds factor * weight * r_a : C : r_b to each pair of nodes, C = tangent(e, q).
-  template <class TangentAt>
-  void add_jacobian(const TangentAt& tangent, double factor, solve::BlockMatrix& A) const {
-    const auto part = std::make_unique_for_overwrite<Mat3[]>(scatter_.n_blocks());
+  /// Gradients of the shape functions at point q of element e.
+  std::span<const Vec3> shape_gradients(Index e, int q) const {
+    return {&shape_gradient_[point(e, q) * static_cast<std::size_t>(n_nodes_)],
+            static_cast<std::size_t>(n_nodes_)};
+  }
+  /// Adds what add_blocks(e, q, weight, blocks) adds to the blocks of each element.
+  template <class AddBlocks>
+  void add_jacobian(const AddBlocks& add_blocks, solve::BlockMatrix& A) const {
+    blocks_.resize(scatter_.n_blocks());
     parallel_for(n_elements_, [&](Index e) {
-      Mat3* blocks = &part[scatter_.block(e)];
+      Mat3* blocks = &blocks_[scatter_.block(e)];
       std::fill_n(blocks, n_nodes_ * (n_nodes_ + 1) / 2, Mat3::Zero());
-      for (int q = 0; q < n_points_; ++q)
-        add_point_blocks(e, q, Mat9(factor * weight(e, q) * tangent(e, q)), blocks);
+      for (int q = 0; q < n_points_; ++q) add_blocks(e, q, weight(e, q), blocks);
     });
-    scatter_.gather_blocks(part.get(), A);
+    scatter_.gather_blocks(blocks_.data(), A);
   }
 
   /// Sum of weight * density(e, q).
@@ -104,7 +109,6 @@ class ElementAssembly {
     return static_cast<std::size_t>(e) * static_cast<std::size_t>(n_nodes_) +
            static_cast<std::size_t>(a);
   }
-  void add_point_blocks(Index e, int q, const Mat9& C, Mat3* blocks) const;
 
   Index n_elements_ = 0;
   int n_nodes_ = 4, n_points_ = 1;
@@ -113,6 +117,7 @@ class ElementAssembly {
   std::vector<Vec3> shape_gradient_;  // M × n_points × n_nodes, material axes, 1/mm
   Points offset_;                     // N × 3
   Scatter scatter_;                   // elements to particles
+  mutable std::vector<Mat3> blocks_;  // of the elements, kept for the next call
 };
 
 }  // namespace coxa::fem

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mode_tensors.h"
+#include "point_blocks.h"
 #include "principal_material.h"
 
 namespace coxa::fem {
@@ -40,6 +41,29 @@ class StVenantKirchhoff : public Material {
         if (k == l) block += lame_.mu * FFt;
       }
     return C;
+  }
+  void add_blocks(const Mat3& F, Tangent kind, double factor, std::span<const Vec3> r,
+                  Mat3* blocks) const override {
+    Mat3 S = second_piola(F);
+    if (kind == Tangent::positive) S = tensile_part(S);
+    const Mat3 FFt = F * F.transpose();
+    const std::size_t n = r.size();
+    Vec3 Fr[10], Sr[10];
+    for (std::size_t a = 0; a < n; ++a) {
+      Fr[a] = F * r[a];
+      Sr[a] = S * r[a];
+    }
+    add_pair_blocks(
+        static_cast<int>(n),
+        [&](int a, int b) {
+          const Vec3& ra = r[static_cast<std::size_t>(a)];
+          const double overlap = ra.dot(r[static_cast<std::size_t>(b)]);
+          Mat3 K = lame_.lambda * Fr[a] * Fr[b].transpose() +
+                   lame_.mu * (Fr[b] * Fr[a].transpose() + overlap * FFt);
+          K.diagonal().array() += ra.dot(Sr[b]);
+          return Mat3(factor * K);
+        },
+        blocks);
   }
 
  private:
@@ -96,6 +120,25 @@ class NeoHookean : public PrincipalMaterial {
             lame_.lambda * G.col(k) * G.col(l).transpose() + back * G.col(l) * G.col(k).transpose();
     C.diagonal().array() += lame_.mu;
     return C;
+  }
+  void add_blocks(const Mat3& F, Tangent kind, double factor, std::span<const Vec3> r,
+                  Mat3* blocks) const override {
+    const double J = F.determinant();
+    if (kind == Tangent::positive || !(J > 0.0))
+      return PrincipalMaterial::add_blocks(F, kind, factor, r, blocks);
+    const Mat3 G = F.inverse().transpose();
+    const double back = lame_.mu - lame_.lambda * std::log(J);
+    Vec3 Gr[10];
+    for (std::size_t a = 0; a < r.size(); ++a) Gr[a] = G * r[a];
+    add_pair_blocks(
+        static_cast<int>(r.size()),
+        [&](int a, int b) {
+          Mat3 K = lame_.lambda * Gr[a] * Gr[b].transpose() + back * Gr[b] * Gr[a].transpose();
+          K.diagonal().array() +=
+              lame_.mu * r[static_cast<std::size_t>(a)].dot(r[static_cast<std::size_t>(b)]);
+          return Mat3(factor * K);
+        },
+        blocks);
   }
 
  private:
@@ -213,6 +256,11 @@ class VerondaWestmann : public PrincipalMaterial {
 };
 
 }  // namespace
+
+void Material::add_blocks(const Mat3& F, Tangent kind, double factor, std::span<const Vec3> r,
+                          Mat3* blocks) const {
+  add_tangent_blocks(tangent(F, kind), factor, r, blocks);
+}
 
 Lame lame_from(double E, double nu) {
   require(E > 0.0, "Young's modulus must be positive, got ", E, " MPa");

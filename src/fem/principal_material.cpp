@@ -1,9 +1,12 @@
 #include "principal_material.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
+
+#include "mode_tensors.h"
+#include "point_blocks.h"
 
 namespace coxa::fem {
 namespace {
@@ -16,9 +19,10 @@ constexpr double kSmallestSum = 1e-4;
 
 /// The symmetric matrix with its negative eigenvalues set to zero.
 Mat3 positive_part(const Mat3& A) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> solver(A);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
-         solver.eigenvectors().transpose();
+  // most are positive definite, which the leading minors tell
+  const double minor = A(0, 0) * A(1, 1) - A(0, 1) * A(1, 0);
+  if (A(0, 0) > 0.0 && minor > 0.0 && A.determinant() > 0.0) return A;
+  return tensile_part(A);
 }
 
 /// dP in the principal frame for changes dF of the off-diagonal pair (i, j): `stretching` for the
@@ -38,6 +42,28 @@ PairStiffness pair_stiffness(const PrincipalResponse& r, const Vec3& s, int i, i
   return {stretching, turning};
 }
 
+/// The tangent in the frame where F is diagonal (Smith, de Goes and Kim 2019): dP_ii = diagonal(i,
+/// j) dF_jj and dP_ij = same(i, j) dF_ij + swapped(i, j) dF_ji.
+struct PrincipalTangent {
+  Mat3 diagonal, same, swapped;
+};
+
+PrincipalTangent principal_tangent(const PrincipalResponse& r, const Vec3& stretch, Tangent kind) {
+  PrincipalTangent t;
+  t.diagonal = kind == Tangent::positive ? positive_part(r.stiffness) : r.stiffness;
+  t.same.setZero();
+  t.swapped.setZero();
+  for (int i = 0; i < 3; ++i)
+    for (int j = i + 1; j < 3; ++j) {
+      PairStiffness pair = pair_stiffness(r, stretch, i, j);
+      if (kind == Tangent::positive)
+        pair = {std::max(0.0, pair.stretching), std::max(0.0, pair.turning)};
+      t.same(i, j) = t.same(j, i) = 0.5 * (pair.stretching + pair.turning);
+      t.swapped(i, j) = t.swapped(j, i) = 0.5 * (pair.stretching - pair.turning);
+    }
+  return t;
+}
+
 }  // namespace
 
 double PrincipalMaterial::energy_density(const Mat3& F) const {
@@ -51,27 +77,38 @@ Mat3 PrincipalMaterial::first_piola(const Mat3& F) const {
 
 Mat9 PrincipalMaterial::tangent(const Mat3& F, Tangent kind) const {
   const SignedSvd svd = signed_svd(F);
-  const PrincipalResponse r = respond(svd.stretch);
-
-  // the tangent in the frame where F is diagonal (Smith, de Goes and Kim 2019)
+  const PrincipalTangent t = principal_tangent(respond(svd.stretch), svd.stretch, kind);
   Mat9 principal = Mat9::Zero();
-  const Mat3 diagonal = kind == Tangent::positive ? positive_part(r.stiffness) : r.stiffness;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) principal(4 * i, 4 * j) = diagonal(i, j);
-  for (int i = 0; i < 3; ++i)
-    for (int j = i + 1; j < 3; ++j) {
-      PairStiffness pair = pair_stiffness(r, svd.stretch, i, j);
-      if (kind == Tangent::positive)
-        pair = {std::max(0.0, pair.stretching), std::max(0.0, pair.turning)};
-      const int ij = i + 3 * j, ji = j + 3 * i;
-      principal(ij, ij) = principal(ji, ji) = 0.5 * (pair.stretching + pair.turning);
-      principal(ij, ji) = principal(ji, ij) = 0.5 * (pair.stretching - pair.turning);
+    for (int j = 0; j < 3; ++j) {
+      principal(4 * i, 4 * j) = t.diagonal(i, j);
+      if (i == j) continue;
+      principal(i + 3 * j, i + 3 * j) = t.same(i, j);
+      principal(i + 3 * j, j + 3 * i) = t.swapped(i, j);
     }
-
   Mat9 turn;  // vec(U X V^T) = turn vec(X)
   for (int k = 0; k < 3; ++k)
     for (int l = 0; l < 3; ++l) turn.block<3, 3>(3 * k, 3 * l) = svd.V(k, l) * svd.U;
   return turn * principal * turn.transpose();
+}
+
+void PrincipalMaterial::add_blocks(const Mat3& F, Tangent kind, double factor,
+                                   std::span<const Vec3> r, Mat3* blocks) const {
+  const SignedSvd svd = signed_svd(F);
+  const PrincipalTangent t = principal_tangent(respond(svd.stretch), svd.stretch, kind);
+  Vec3 turned[10];  // the gradients in the principal frame
+  for (std::size_t a = 0; a < r.size(); ++a) turned[a] = svd.V.transpose() * r[a];
+  add_pair_blocks(
+      static_cast<int>(r.size()),
+      [&](int a, int b) {
+        const Vec3 &ra = turned[a], &rb = turned[b];
+        // t.same has no diagonal, so the products below leave out i = j by themselves
+        Mat3 K = t.diagonal.cwiseProduct(ra * rb.transpose()) +
+                 t.swapped.cwiseProduct(rb * ra.transpose());
+        K.diagonal() += t.same * ra.cwiseProduct(rb);
+        return Mat3(factor * (svd.U * K * svd.U.transpose()));
+      },
+      blocks);
 }
 
 }  // namespace coxa::fem

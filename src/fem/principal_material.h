@@ -18,6 +18,8 @@ class PrincipalMaterial : public Material {
   double energy_density(const Mat3& F) const override;
   Mat3 first_piola(const Mat3& F) const override;
   Mat9 tangent(const Mat3& F, Tangent kind) const override;
+  void add_blocks(const Mat3& F, Tangent kind, double factor, std::span<const Vec3> r,
+                  Mat3* blocks) const override;
 
  protected:
   /// Energy infinite and derivatives zero where the law forbids the stretches.

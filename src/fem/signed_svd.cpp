@@ -14,7 +14,7 @@ constexpr double kOrthogonal = 1e-15;  // cosine between two columns that counts
 /// Turns columns p and q of B (and of V) until they are orthogonal; false if they were already.
 bool orthogonalise(Mat3& B, Mat3& V, int p, int q) {
   const double a = B.col(p).squaredNorm(), b = B.col(q).squaredNorm(), c = B.col(p).dot(B.col(q));
-  if (!(std::abs(c) > kOrthogonal * std::sqrt(a * b))) return false;
+  if (!(c * c > kOrthogonal * kOrthogonal * a * b)) return false;
   const double zeta = (b - a) / (2.0 * c);
   const double t = (zeta >= 0.0 ? 1.0 : -1.0) / (std::abs(zeta) + std::sqrt(1.0 + zeta * zeta));
   const double cosine = 1.0 / std::sqrt(1.0 + t * t), sine = cosine * t;

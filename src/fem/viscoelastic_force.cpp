@@ -8,6 +8,7 @@
 
 #include "element_assembly.h"
 #include "mode_tensors.h"
+#include "point_blocks.h"
 
 namespace coxa::fem {
 
@@ -104,13 +105,17 @@ void ViscoelasticForce::add_jacobian(const VecX& x, const VecX&, double stiffnes
                                      solve::BlockMatrix& A) const {
   if (stiffness_factor == 0.0) return;
   assembly_->add_jacobian(
-      [&](Index e, int q) {
+      [&](Index e, int q, double weight, Mat3* blocks) {
         const Mat3& past = state_->past[assembly_->point(e, q)];
-        Mat9 C = state_->present * material_->tangent(assembly_->gradient_of(x, e, q), tangent_);
+        const double factor = stiffness_factor * weight;
+        const auto r = assembly_->shape_gradients(e, q);
+        material_->add_blocks(assembly_->gradient_of(x, e, q), tangent_, factor * state_->present,
+                              r, blocks);
+        Mat9 C = Mat9::Zero();
         add_geometric(tangent_ == Tangent::positive ? tensile_part(past) : past, C);
-        return C;
+        add_tangent_blocks(C, factor, r, blocks);
       },
-      stiffness_factor, A);
+      A);
 }
 
 double ViscoelasticForce::energy(const VecX& x) const {

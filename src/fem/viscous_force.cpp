@@ -4,6 +4,7 @@
 
 #include "element_assembly.h"
 #include "mode_tensors.h"
+#include "point_blocks.h"
 
 namespace coxa::fem {
 
@@ -42,7 +43,7 @@ void ViscousForce::add_jacobian(const VecX& x, const VecX& v, double stiffness_f
                                 double damping_factor, solve::BlockMatrix& A) const {
   if (stiffness_factor == 0.0 && damping_factor == 0.0) return;
   assembly_->add_jacobian(
-      [&](Index e, int q) {
+      [&](Index e, int q, double weight, Mat3* blocks) {
         const Mat3 F = assembly_->gradient_of(x, e, q), rate = assembly_->rate_of(v, e, q);
         const Mat3 G = F.transpose() * rate;
         Mat9 C = Mat9::Zero();
@@ -52,9 +53,9 @@ void ViscousForce::add_jacobian(const VecX& x, const VecX& v, double stiffness_f
           C += damping_factor * curves_[k].slope(tensors_[k].cwiseProduct(G).sum()) *
                FM.reshaped() * FM.reshaped().transpose();
         }
-        return C;
+        add_tangent_blocks(C, weight, assembly_->shape_gradients(e, q), blocks);
       },
-      1.0, A);
+      A);
 }
 
 void ViscousForce::set_offsets(const Points& offset) { assembly_->set_offsets(offset); }

@@ -97,6 +97,31 @@ TEST_P(EveryLaw, HasTheTangentOfItsStress) {
     EXPECT_LE((C - C.transpose()).norm(), 1e-12 * C.norm());
   }
 }
+TEST_P(EveryLaw, GivesTheBlocksOfItsTangentForFourAndTenNodes) {
+  Rng rng(16);
+  for (const std::size_t n : {4u, 10u})
+    for (const Tangent kind : {Tangent::exact, Tangent::positive}) {
+      const Mat3 F = 0.9 * some_deformation(rng, 0.12);
+      std::vector<Vec3> r(n);
+      r[0].setZero();
+      for (std::size_t a = 1; a < n; ++a) {
+        r[a] = rng.normal3();
+        r[0] -= r[a];
+      }
+      const Mat9 C = law->tangent(F, kind);
+      std::vector<Mat3> blocks(n * (n + 1) / 2, Mat3::Ones());
+      law->add_blocks(F, kind, 0.5, r, blocks.data());
+      std::size_t at = 0;
+      for (std::size_t a = 0; a < n; ++a)
+        for (std::size_t b = a; b < n; ++b, ++at) {
+          Mat3 expected = Mat3::Ones();
+          for (int k = 0; k < 3; ++k)
+            for (int l = 0; l < 3; ++l)
+              expected += 0.5 * r[a][k] * r[b][l] * C.block<3, 3>(3 * k, 3 * l);
+          EXPECT_LE((blocks[at] - expected).norm(), 1e-11 * C.norm()) << a << " " << b;
+        }
+    }
+}
 TEST_P(EveryLaw, HasTheTangentWhereStretchesAreEqualOrNearlySo) {
   for (const double gap : {0.0, 1e-12, 1e-8, 0.9e-5, 1.1e-5, 1e-4}) {
     const Mat3 R = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).matrix();

@@ -3,6 +3,7 @@
 #include <coxa/core/types.h>
 
 #include <memory>
+#include <span>
 
 namespace coxa::fem {
 
@@ -33,6 +34,12 @@ class Material {
   virtual Mat3 first_piola(const Mat3& F) const = 0;
   /// dP/dF, 9×9 over the columns of F one after the other: entry (a + 3k, b + 3l) is dP_ak / dF_bl.
   virtual Mat9 tangent(const Mat3& F, Tangent kind) const = 0;
+  /// Adds the blocks of an element's stiffness at one point: factor * r_a : tangent : r_b to block
+  /// (a, b), a <= b, which stands at a n - a (a - 1)/2 + b - a of `blocks`. Laws with a shorter way
+  /// than `tangent` take it.
+  /// @param r  gradients of the n shape functions, 1/mm
+  virtual void add_blocks(const Mat3& F, Tangent kind, double factor, std::span<const Vec3> r,
+                          Mat3* blocks) const;
 };
 
 /// sigma = F S F^T / J for a first Piola-Kirchhoff stress P at F; NaN where J = 0.
