@@ -3,6 +3,7 @@
 #include <coxa/core/error.h>
 #include <coxa/geom/fits.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
