@@ -8,7 +8,6 @@
 #include <coxa/mesh/vertex_normals.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
