@@ -13,6 +13,9 @@ namespace {
 
 // longest move of a node in one Newton step, mm: a fraction of the cartilage's thickness
 constexpr double kMaxNodeStep = 0.3;
+// linear solves that one elastic tangent serves: strains change little within a sub-step, contact
+// much
+constexpr int kTangentAge = 8;
 // linear solves need not be better than this far from equilibrium, nor better than that near it
 constexpr double kLoosestLinear = 0.1, kTightestLinear = 1e-3;
 
@@ -72,7 +75,12 @@ SolveReport Equilibrium::relax(HipState& state, const Vec3& force, double tolera
       .residual = [&](const VecX& x) { return residual(at(x), force); },
       .step =
           [&](const VecX& x, const VecX& r) {
-            tangent_.update(system_.elastic(), state.contact, x);
+            if (tangent_age_ == 0 || tangent_age_ > kTangentAge) {
+              tangent_.update_elastic(system_.elastic(), x);
+              tangent_age_ = 0;
+            }
+            ++tangent_age_;
+            tangent_.update_contact(state.contact, x);
             const double wanted = 0.3 * tolerance * reference / r.norm();
             VecX step;
             tangent_.solve(r, std::clamp(wanted, kTightestLinear, kLoosestLinear), step);
@@ -161,6 +169,7 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
   const double overlap =
       exact ? options_.penetration_tolerance : 10.0 * options_.penetration_tolerance;
   Settling settling;
+  tangent_age_ = 0;
   for (int round = 0; round <= options_.max_contact_updates; ++round) {
     monitor.check_cancelled();
     state.contact.update_pairs(state.x);

@@ -57,6 +57,7 @@ class Equilibrium {
   const JointOptions& options_;
   std::vector<bool> free_;
   HipTangent tangent_;
+  int tangent_age_ = 0;  ///< linear solves since the elastic tangent was taken
 };
 
 /// Sum of pressure times area times normal over the pairs: force of the femur on the socket, N.

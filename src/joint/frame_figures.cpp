@@ -20,7 +20,7 @@ void fill_contact(FrameResult& frame, const std::vector<collide::ContactSample>&
   Vec3 weighted = Vec3::Zero();
   for (const collide::ContactSample& sample : samples) {
     total_area += sample.area;
-    if (sample.gap < 0.0) contact.penetration = std::max(contact.penetration, -sample.gap);
+    if (sample.gap < 0.0) contact.deepest_sample = std::max(contact.deepest_sample, -sample.gap);
     if (sample.pressure == 0.0) continue;
     contact.contact_area += sample.area;
     total_force += sample.pressure * sample.area;
@@ -166,6 +166,7 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
   balance.elastic_energy = dynamics::total_energy(system.elastic(), state.x);
   for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
     const double gap = std::min(0.0, state.contact.gap(constraint, state.x));
+    frame.contact.penetration = std::max(frame.contact.penetration, -gap);
     balance.contact_energy += 0.5 * state.contact.stiffness() * constraint.area * gap * gap;
   }
   if (force.norm() > 0.0) {

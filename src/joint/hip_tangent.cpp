@@ -42,18 +42,15 @@ HipTangent::HipTangent(std::vector<bool> free,
   }
 }
 
-void HipTangent::update(const std::vector<const dynamics::Force*>& elastic,
-                        const collide::SurfaceContact& contact, const VecX& x) {
+void HipTangent::update_elastic(const std::vector<const dynamics::Force*>& elastic, const VecX& x) {
   dynamics::assemble(elastic, x, VecX::Zero(x.size()), 1.0, 0.0, full_);
   parallel_for(static_cast<std::int64_t>(source_.size()), [&](Index slot) {
     const auto s = static_cast<std::size_t>(slot);
     elastic_.blocks()[s] = full_.blocks()[static_cast<std::size_t>(source_[s])];
   });
-  copy_contact(contact, x);
-  update_preconditioner();
 }
 
-void HipTangent::copy_contact(const collide::SurfaceContact& contact, const VecX& x) {
+void HipTangent::update_contact(const collide::SurfaceContact& contact, const VecX& x) {
   rows_.clear();
   row_particle_.clear();
   row_slope_.clear();
@@ -72,8 +69,12 @@ void HipTangent::copy_contact(const collide::SurfaceContact& contact, const VecX
     rows_.push_back(row);
   }
   row_force_.assign(rows_.size(), 0.0);
+  index_rows_by_particle();
+  update_preconditioner();
+}
 
-  // the same by particle, so that products gather in a fixed order
+/// The rows' entries by particle, so that products gather in a fixed order.
+void HipTangent::index_rows_by_particle() {
   use_start_.assign(particle_.size() + 1, 0);
   for (const Index i : row_particle_) ++use_start_[static_cast<std::size_t>(i) + 1];
   for (std::size_t i = 0; i < particle_.size(); ++i) use_start_[i + 1] += use_start_[i];

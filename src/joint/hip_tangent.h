@@ -19,9 +19,11 @@ class HipTangent {
   /// @param free per particle: whether it may move
   HipTangent(std::vector<bool> free, const std::vector<std::pair<Index, Index>>& elastic_pattern);
 
-  /// Takes the stiffness at x.
-  void update(const std::vector<const dynamics::Force*>& elastic,
-              const collide::SurfaceContact& contact, const VecX& x);
+  /// Takes the elastic stiffness at x.
+  void update_elastic(const std::vector<const dynamics::Force*>& elastic, const VecX& x);
+  /// Takes the constraints that press at x; to be called after update_elastic and whenever contact
+  /// changed.
+  void update_contact(const collide::SurfaceContact& contact, const VecX& x);
 
   /// Solves tangent · step = residual (3n values; both zero at held particles) by conjugate
   /// gradients. Stops early, with what is reached, where the tangent is not positive definite.
@@ -32,8 +34,7 @@ class HipTangent {
     double stiffness;   // N/mm: penalty times area
     Index first, last;  // range in row_particle_
   };
-  void copy_elastic();
-  void copy_contact(const collide::SurfaceContact& contact, const VecX& x);
+  void index_rows_by_particle();
   void update_preconditioner();
   void multiply(const VecX& z, VecX& y) const;
   VecX preconditioned(const VecX& r) const;

@@ -14,7 +14,8 @@
 /// Layered tetrahedral meshes with known shape, for the tests of the joint.
 namespace coxa::test {
 
-/// Unit directions on a cap about +z: `rings` rings out to polar angle `half_angle`, and its triangles.
+/// Unit directions on a cap about +z: `rings` rings out to polar angle `half_angle`, and its
+/// triangles.
 inline TriMesh cap_directions(double half_angle, Index rings) {
   TriMesh cap;
   const auto first = [](Index ring) { return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1); };
@@ -24,8 +25,8 @@ inline TriMesh cap_directions(double half_angle, Index rings) {
     const double polar = half_angle * ring / rings;
     for (Index k = 0; k < 6 * ring; ++k) {
       const double turn = 2.0 * kPi * k / (6.0 * ring);
-      cap.points.row(first(ring) + k) << std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn),
-          std::cos(polar);
+      cap.points.row(first(ring) + k) << std::sin(polar) * std::cos(turn),
+          std::sin(polar) * std::sin(turn), std::cos(polar);
     }
   }
   std::vector<std::array<Index, 3>> triangles;
@@ -33,7 +34,8 @@ inline TriMesh cap_directions(double half_angle, Index rings) {
     const Index n = std::max<Index>(1, 6 * ring), m = 6 * (ring + 1);
     for (Index sector = 0; sector < 6; ++sector) {
       for (Index k = 0; k <= ring; ++k) {
-        const Index a = first(ring) + (sector * ring + k) % n, b = first(ring) + (sector * ring + k + 1) % n;
+        const Index a = first(ring) + (sector * ring + k) % n,
+                    b = first(ring) + (sector * ring + k + 1) % n;
         const Index c = first(ring + 1) + (sector * (ring + 1) + k) % m,
                     d = first(ring + 1) + (sector * (ring + 1) + k + 1) % m;
         triangles.push_back({a, c, d});
@@ -43,7 +45,8 @@ inline TriMesh cap_directions(double half_angle, Index rings) {
   }
   cap.triangles.resize(static_cast<Index>(triangles.size()), 3);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (int k = 0; k < 3; ++k) cap.triangles(static_cast<Index>(t), k) = triangles[t][static_cast<std::size_t>(k)];
+    for (int k = 0; k < 3; ++k)
+      cap.triangles(static_cast<Index>(t), k) = triangles[t][static_cast<std::size_t>(k)];
   }
   return cap;
 }
@@ -54,13 +57,15 @@ inline double tet_volume(const Points& p, const Eigen::Matrix<Index, 1, 4>& t) {
   return edges.determinant() / 6.0;
 }
 
-/// Prisms between consecutive sheets over the same triangles, three tetrahedra each; sheet 0 is the bone side,
-/// the last the articular side.
+/// Prisms between consecutive sheets over the same triangles, three tetrahedra each; sheet 0 is the
+/// bone side, the last the articular side.
 inline TetMesh layered_mesh(const std::vector<Points>& sheets, const Triangles& triangles) {
-  const Index n = static_cast<Index>(sheets.front().rows()), layers = static_cast<Index>(sheets.size()) - 1;
+  const Index n = static_cast<Index>(sheets.front().rows()),
+              layers = static_cast<Index>(sheets.size()) - 1;
   TetMesh mesh;
   mesh.points.resize(n * (layers + 1), 3);
-  for (Index s = 0; s <= layers; ++s) mesh.points.middleRows(s * n, n) = sheets[static_cast<std::size_t>(s)];
+  for (Index s = 0; s <= layers; ++s)
+    mesh.points.middleRows(s * n, n) = sheets[static_cast<std::size_t>(s)];
   mesh.tets.resize(3 * layers * triangles.rows(), 4);
   Index row = 0;
   for (Index s = 0; s < layers; ++s) {
@@ -74,14 +79,16 @@ inline TetMesh layered_mesh(const std::vector<Points>& sheets, const Triangles& 
     }
   }
   for (Index t = 0; t < mesh.n_tets(); ++t) {
-    if (tet_volume(mesh.points, mesh.tets.row(t)) < 0.0) std::swap(mesh.tets(t, 2), mesh.tets(t, 3));
+    if (tet_volume(mesh.points, mesh.tets.row(t)) < 0.0)
+      std::swap(mesh.tets(t, 2), mesh.tets(t, 3));
   }
   // boundary: faces of one tetrahedron only, oriented outward
   std::map<std::array<Index, 3>, std::pair<int, std::array<Index, 3>>> faces;
   constexpr int corners[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
   for (Index t = 0; t < mesh.n_tets(); ++t) {
     for (const auto& corner : corners) {
-      const std::array<Index, 3> face{mesh.tets(t, corner[0]), mesh.tets(t, corner[1]), mesh.tets(t, corner[2])};
+      const std::array<Index, 3> face{mesh.tets(t, corner[0]), mesh.tets(t, corner[1]),
+                                      mesh.tets(t, corner[2])};
       std::array<Index, 3> key = face;
       std::sort(key.begin(), key.end());
       auto& entry = faces[key];
@@ -94,18 +101,22 @@ inline TetMesh layered_mesh(const std::vector<Points>& sheets, const Triangles& 
     if (entry.first != 1) continue;
     facets.push_back(entry.second);
     const bool bone = key[2] < n, articular = key[0] >= layers * n;
-    mesh.facet_tags.push_back(bone ? FacetTag::bone_side : articular ? FacetTag::articular_side : FacetTag::rim);
+    mesh.facet_tags.push_back(bone        ? FacetTag::bone_side
+                              : articular ? FacetTag::articular_side
+                                          : FacetTag::rim);
   }
   mesh.facets.resize(static_cast<Index>(facets.size()), 3);
   for (std::size_t f = 0; f < facets.size(); ++f) {
-    for (int k = 0; k < 3; ++k) mesh.facets(static_cast<Index>(f), k) = facets[f][static_cast<std::size_t>(k)];
+    for (int k = 0; k < 3; ++k)
+      mesh.facets(static_cast<Index>(f), k) = facets[f][static_cast<std::size_t>(k)];
   }
   return mesh;
 }
 
-/// Spherical shell over a cap about +z; the bone side has radius `bone`, the articular side `articular`.
-inline TetMesh cap_shell(double bone, double articular, double half_angle, Index rings, Index layers,
-                         const Vec3& centre = Vec3::Zero()) {
+/// Spherical shell over a cap about +z; the bone side has radius `bone`, the articular side
+/// `articular`.
+inline TetMesh cap_shell(double bone, double articular, double half_angle, Index rings,
+                         Index layers, const Vec3& centre = Vec3::Zero()) {
   const TriMesh cap = cap_directions(half_angle, rings);
   std::vector<Points> sheets;
   for (Index s = 0; s <= layers; ++s) {
@@ -115,8 +126,8 @@ inline TetMesh cap_shell(double bone, double articular, double half_angle, Index
   return layered_mesh(sheets, cap.triangles);
 }
 
-/// A ball of cartilage in a cup of cartilage, the cup's axis down -z: the femur is below, its force goes up.
-/// Frames are the ISB axes turned so that superior (y) is image z.
+/// A ball of cartilage in a cup of cartilage, the cup's axis down -z: the femur is below, its force
+/// goes up. Frames are the ISB axes turned so that superior (y) is image z.
 struct BallInCup {
   double head_radius = 25.0;  ///< mm, of the femoral articular side
   double gap = 0.0;           ///< mm, cup radius minus head radius
@@ -128,8 +139,10 @@ struct BallInCup {
 inline joint::JointModel make_ball_in_cup(const BallInCup& shape = {}) {
   joint::JointModel model;
   const double R = shape.head_radius, cup = R + shape.gap, h = shape.thickness;
-  model.acetabular_cartilage = cap_shell(cup + h, cup, shape.cup_angle, shape.cup_rings, shape.layers);
-  model.femoral_cartilage = cap_shell(R - h, R, shape.head_angle, shape.head_rings, shape.layers, shape.head_offset);
+  model.acetabular_cartilage =
+      cap_shell(cup + h, cup, shape.cup_angle, shape.cup_rings, shape.layers);
+  model.femoral_cartilage =
+      cap_shell(R - h, R, shape.head_angle, shape.head_rings, shape.layers, shape.head_offset);
   // x anterior = -y in LPS, y superior = z, z right = -x
   model.X_IP.R << 0, 0, -1, -1, 0, 0, 0, 1, 0;
   model.X_IF = model.X_IP;

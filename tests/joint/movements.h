@@ -6,7 +6,8 @@
 namespace coxa::test {
 
 /// n frames of even steps from rest to the given angles; the joint centre stays.
-inline motion::HipMotion movement_to(const motion::HipAngles& end, Index n, Side side = Side::right) {
+inline motion::HipMotion movement_to(const motion::HipAngles& end, Index n,
+                                     Side side = Side::right) {
   motion::HipMotion motion;
   for (Index k = 0; k < n; ++k) {
     const double s = n == 1 ? 1.0 : static_cast<double>(k) / (n - 1);

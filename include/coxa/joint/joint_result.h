@@ -43,7 +43,9 @@ struct ContactFigures {
   double contact_share = 0.0;        ///< of the acetabular articular area, in [0, 1]
   Vec3 centre_of_pressure = Vec3::Constant(kNaN);  ///< mm, image frame
   double centre_hour = kNaN;                       ///< of the centre of pressure on the clock face
-  double penetration = 0.0;                        ///< mm, largest left overlap of the cartilages
+  double penetration =
+      0.0;  ///< mm, largest overlap left: mean around a node, as contact is enforced
+  double deepest_sample = 0.0;  ///< mm, largest overlap at a single sampling point
 };
 
 /// Balance of one converged frame.
