@@ -5,6 +5,7 @@
 #include <coxa/core/error.h>
 #include <coxa/segment/evolve.h>
 #include <coxa/segment/placement.h>
+#include <coxa/segment/pose_search.h>
 #include <coxa/segment/seat.h>
 
 #include <algorithm>
@@ -162,7 +163,9 @@ class Hip {
       models.push_back(models_[s]);
     }
     std::vector<Body> bones;
-    const auto placed = place_by_landmarks(models, landmarks, atlas_, options_.landmark_error);
+    const std::vector<Points> placed =
+        landmarks.empty() ? find_pose(models, images_, options_, monitor).placed
+                          : place_by_landmarks(models, landmarks, atlas_, options_.landmark_error);
     for (std::size_t b = 0; b < models.size(); ++b) {
       bones.push_back(placed_body(*models[b], placed[b]));
     }

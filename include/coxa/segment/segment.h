@@ -37,7 +37,7 @@ struct SegmentOptions {
       0.02;  ///< mm, mean move of an iteration below which a resolution is finished, >= 0
   bool correct_bias = true;  ///< take a slow field of brightness out of each image first
   std::optional<std::string> contrast =
-      {};                         ///< the atlas' profiles to use; none: the best fitting of them
+      {};                        ///< the atlas' profiles to use; none: the best fitting of them
   double minimum_quality = 0.4;  ///< in [0, 1]: below it the result is refused with below_quality
 };
 
