@@ -1,0 +1,117 @@
+#!/usr/bin/python3
+"""Segments the simulated MRIs of ../shared/data/phantom with atlases free of the subject, and prints the distances.
+
+usage: evaluate_segmentation.py --coxa build/release/coxa [--shared ../shared] [--work DIR] [--error MM] [--seed N] [--only NAME,…]
+
+Subjects are taken out in groups (GROUPS), one atlas per group; every atlas is free of all libhip hip bones, so that the
+hip-bone column is of a bone whose like the atlas has not seen (all phantoms' hip bones are warps of one bone: a weak test).
+Landmarks come from the truth surfaces by the rules below, with normal noise of --error mm (standard error of the distance).
+Atlases and results are kept in DIR and reused: delete it to start afresh.  Distances by surface_distance.py --image.
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+GROUPS = [("m2", "m4"), ("m5", "m6", "m8"), ("m1", "m3", "m10", "m11")]
+STRUCTURES = ["femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"]
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def truth_path(shared, subject, side, structure):
+    folder = shared / "data/libhip" / subject / side
+    exact = folder / f"{structure}.ply"
+    return exact if exact.exists() else folder / f"{structure}_fitted.ply"
+
+
+def landmarks_of(shared, subject, side, surfaces):
+    """Landmarks of the truth, LPS mm: extreme points in the frame of a right hip with the head's centre as origin."""
+    mirror = np.array([-1.0 if side == "left" else 1.0, 1.0, 1.0])
+    points = {s: surfaces.arrays(surfaces.read(str(truth_path(shared, subject, side, s))))[0] * mirror for s in STRUCTURES}
+    cartilage = points["femoral_cartilage"]
+    centre = np.linalg.lstsq(np.c_[2 * cartilage, np.ones(len(cartilage))], (cartilage ** 2).sum(1), rcond=None)[0][:3]
+    femur, bone, socket = (points[s] - centre for s in ("femur", "hip_bone", "acetabular_cartilage"))
+    radius = np.linalg.norm(femur, axis=1)
+
+    def extreme(p, direction, mask):
+        p = p[mask]
+        return p[(p @ np.array(direction)).argmax()]
+
+    marks = {
+        "femoral_head_centre": np.zeros(3),
+        "femoral_neck_centre": femur[(radius > 32) & (radius < 38)].mean(0),
+        "greater_trochanter_tip": extreme(femur, (0, 0, 1), femur[:, 0] < -32),
+        "lesser_trochanter_tip": extreme(femur, (0.6, 0.8, 0), (femur[:, 2] > -75) & (femur[:, 2] < -45)),
+        "asis": extreme(bone, (0, -1, 0), bone[:, 2] > 45),
+        "aiis": extreme(bone, (0, -1, 0), (bone[:, 2] > 15) & (bone[:, 2] < 42) & (bone[:, 0] < 15)),
+        "psis": extreme(bone, (0, 1, 0), bone[:, 2] > 30),
+        "pubic_tubercle": extreme(bone, (0, -1, 0), (bone[:, 0] > 40) & (bone[:, 2] < 10)),
+        "ischial_tuberosity": extreme(bone, (0, 0, -1), bone[:, 2] < 0),
+        "acetabular_rim_superior": extreme(socket, (-0.5, 0, 0.866), socket[:, 2] > -100),
+    }
+    return {name: (p + centre) * mirror for name, p in marks.items()}
+
+
+def run(command):
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
+    if done.returncode:
+        print(f"{' '.join(map(str, command))}\n  ended with {done.returncode}: {done.stderr.strip()[-400:]}", file=sys.stderr)
+    return done
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--coxa", default=ROOT / "build/release/coxa")
+    parser.add_argument("--shared", type=pathlib.Path, default=ROOT.parent / "shared")
+    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_evaluation"))
+    parser.add_argument("--error", type=float, default=3.0)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", default="")
+    options = parser.parse_args()
+    evaluators = options.shared / "eval"
+    sys.path.insert(0, str(evaluators))
+    import surface_distance as surfaces
+
+    options.work.mkdir(parents=True, exist_ok=True)
+    images = sorted((options.shared / "data/phantom").glob("m*.nii.gz"))
+    wanted = [w for w in options.only.split(",") if w]
+    print(f"{'phantom':22s} " + " ".join(f"{s:>26s}" for s in STRUCTURES) + "   seconds  (assd / hd95 / bias, mm)")
+    for image in images:
+        name = image.name[: -len(".nii.gz")]
+        if wanted and name not in wanted:
+            continue
+        subject, side = name.split("_")[:2]
+        group = next(g for g in GROUPS if subject in g)
+        atlas = options.work / f"atlas_without_{'_'.join(group)}.coxa-atlas"
+        if not atlas.exists():
+            exclude = [a for s in group for a in ("--exclude", s)]
+            run([options.coxa, "atlas", "build", "--data", options.shared / "data", *exclude,
+                 "--exclude-structure", "libhip:hip_bone", "--out", atlas])
+        rng = np.random.default_rng([options.seed, *name.encode()])
+        marks = landmarks_of(options.shared, subject, side, surfaces)
+        table = options.work / f"{name}_landmarks.csv"
+        rows = [f"{k}_{side}," + ",".join(f"{x:.3f}" for x in p + rng.normal(0, options.error / np.sqrt(3), 3)) for k, p in marks.items()]
+        table.write_text("name,x,y,z\n" + "\n".join(rows) + "\n")
+        out = options.work / name
+        start = time.time()
+        done = run([options.coxa, "segment", "--image", image, "--side", side, "--landmarks", table, "--atlas", atlas, "--out", out])
+        seconds = time.time() - start
+        cells = []
+        for structure in STRUCTURES:
+            result = out / f"{structure}.ply"
+            if done.returncode or not result.exists():
+                cells.append("failed")
+                continue
+            judged = run(["/usr/bin/python3", evaluators / "surface_distance.py", result,
+                          truth_path(options.shared, subject, side, structure), "--image", image, "--json"])
+            d = json.loads(judged.stdout)
+            cells.append(f"{d['assd']:.3f} / {d['hd95']:.2f} / {d['bias']:+.2f}")
+        print(f"{name:22s} " + " ".join(f"{c:>26s}" for c in cells) + f"   {seconds:.0f}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
