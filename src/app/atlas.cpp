@@ -23,15 +23,14 @@ void add_build(CLI::App& verb, Context& context) {
                     "subject to leave out, both sides, for example m2");
   build->add_option("--exclude-structure", request->examples.exclude_structures,
                     "structure of a set to leave out, for example libhip:hip_bone");
-  build->add_option("--contrasts", request->examples.contrasts,
+  build->add_option("--contrasts", request->profiles.contrasts,
                     "contrasts to learn profiles for: t1 t2 pd dess");
   build
-      ->add_option("--profile-hips", request->examples.profile_hips,
-                   "hips whose MRI is simulated per contrast")
+      ->add_option("--profile-hips", request->profiles.n_hips, "virtual hips per class of profiles")
       ->check(CLI::PositiveNumber);
   build->add_option("--out", *out, "atlas file to write")->required();
   build->callback([request, out, &context] {
-    request->examples.seed = context.common.seed;
+    request->profiles.seed = context.common.seed;
     context.print_result(*out, pipeline::build_atlas_file(*request, *out, context.monitor()));
   });
 }
@@ -47,6 +46,7 @@ void print_info(const std::string& path, Context& context) {
     record.figures[model.name + "_vertices"] = std::int64_t{finest.n_vertices()};
     record.figures[model.name + "_modes"] =
         static_cast<std::int64_t>(model.shape.deviations.size());
+    record.figures[model.name + "_leave_one_out_mm"] = model.leave_one_out_error;
     for (const shape::ProfileSet& set : model.profiles) {
       record.figures[model.name + "_profiles_" + set.contrast + "_reliability"] =
           set.reliability.mean();

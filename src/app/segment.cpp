@@ -37,8 +37,8 @@ void run_segment(const SegmentArguments& arguments, Context& context) {
   }
   request.side = arguments.side == "left" ? Side::left : Side::right;
   request.landmarks = arguments.landmarks;
-  request.atlas =
-      arguments.atlas.empty() ? pipeline::shipped_data("atlas/hip.coxa-atlas") : arguments.atlas;
+  request.atlas = arguments.atlas.empty() ? pipeline::shipped_data("atlas/hip.coxa-atlas")
+                                          : std::filesystem::path(arguments.atlas);
   request.options.structures = structures_from(arguments.structures);
   request.options.landmark_error = arguments.landmark_error;
   if (!arguments.contrast.empty()) request.options.contrast = arguments.contrast;

@@ -1,7 +1,6 @@
 #include <coxa/pipeline/atlas_examples.h>
 
 #include <coxa/core/error.h>
-#include <coxa/image/phantom.h>
 #include <coxa/io/surfaces.h>
 #include <coxa/motion/joint_centre.h>
 
@@ -27,6 +26,7 @@ struct ScannedHip {
   Side side = Side::right;
   SurfaceSet surfaces;
   std::map<std::string, VecX> trust;  ///< where not all is anatomy
+  std::map<std::string, Index> bone_side_faces;
   std::string name() const {
     return set + "/" + subject + "/" + (side == Side::left ? "left" : "right");
   }
@@ -44,10 +44,12 @@ std::vector<fs::path> subfolders(const fs::path& folder) {
 
 ScannedHip read_hip(const std::string& set, const std::string& subject, const fs::path& folder,
                     Side side) {
-  ScannedHip hip{set, subject, side, {}, {}};
+  ScannedHip hip{set, subject, side, {}, {}, {}};
   for (const char* structure : kStructures) {
     const fs::path path = folder / (std::string(structure) + ".ply");
-    if (fs::exists(path)) hip.surfaces[structure].mesh = io::read_surface(path);
+    if (!fs::exists(path)) continue;
+    hip.surfaces[structure].mesh = io::read_surface(path);
+    if (const auto n = io::read_bone_side_faces(path)) hip.bone_side_faces[structure] = *n;
   }
   return hip;
 }
@@ -76,7 +78,7 @@ std::vector<ScannedHip> scan_label_maps(const fs::path& folder) {
     for (const Side side : {Side::left, Side::right}) {
       const LabelledBones bones = bones_from_labels(file, side);
       const std::string stem = file.filename().string();
-      ScannedHip hip{"pelvic_ref", stem.substr(stem.find_last_of('_') + 1, 3), side, {}, {}};
+      ScannedHip hip{"pelvic_ref", stem.substr(stem.find_last_of('_') + 1, 3), side, {}, {}, {}};
       hip.surfaces["hip_bone"].mesh = bones.hip_bone;
       hip.surfaces["femur"].mesh = bones.femur;
       hip.trust["hip_bone"] = bones.hip_bone_trust;
@@ -121,6 +123,7 @@ Vec3 head_centre(const ScannedHip& hip) {
 shape::HipExample as_example(const ScannedHip& hip) {
   shape::HipExample example;
   example.name = hip.name();
+  example.bone_side_faces = hip.bone_side_faces;
   const Vec3 centre = head_centre(hip);
   for (const auto& [structure, surface] : hip.surfaces) {
     shape::TrustedSurface trusted{surface.mesh, {}};
@@ -143,58 +146,6 @@ void sort_by_use(std::vector<shape::HipExample>& examples) {
   };
   std::stable_sort(examples.begin(), examples.end(),
                    [&](const auto& a, const auto& b) { return femur_reach(a) > femur_reach(b); });
-}
-
-Contrast contrast_named(const std::string& name) {
-  const std::map<std::string, Contrast> known{
-      {"t1", Contrast::t1}, {"t2", Contrast::t2}, {"pd", Contrast::pd}, {"dess", Contrast::dess}};
-  const auto it = known.find(name);
-  require(it != known.end(), "no contrast \"", name, "\"; there are t1, t2, pd, dess");
-  return it->second;
-}
-
-shape::ExampleImage simulated(const shape::HipExample& example, const std::string& contrast,
-                              const AtlasExampleOptions& options, std::uint64_t seed,
-                              const Monitor& monitor) {
-  std::vector<TissueSurface> surfaces;
-  for (const char* structure : kStructures) {
-    const auto it = example.surfaces.find(structure);
-    if (it == example.surfaces.end()) continue;
-    const TriMesh& mesh = it->second.mesh;
-    const bool bone = std::string(structure).find("cartilage") == std::string::npos;
-    TissueSurface tissue{
-        mesh.points, mesh.triangles, bone ? Tissue::marrow : Tissue::cartilage, {}};
-    if (std::string(structure) == "femur")
-      tissue.shell = shell_thicker_below(mesh.points, Vec3::Zero());
-    if (std::string(structure) == "hip_bone") tissue.shell = VecX::Constant(mesh.n_vertices(), 1.0);
-    surfaces.push_back(std::move(tissue));
-  }
-  PhantomOptions phantom;
-  phantom.contrast = contrast_named(contrast);
-  phantom.voxel = Vec3::Constant(options.voxel);
-  phantom.centre = Vec3::Zero();
-  phantom.field_of_view = Vec3(160.0, 160.0, 200.0);
-  phantom.bias = 0.0;
-  phantom.seed = seed;
-  phantom.body_centre =
-      Vec3(85.0, 20.0, 0.0);  // a right hip lies that far to the right of the body's axis
-  return {contrast, simulate_mri(surfaces, phantom, monitor)};
-}
-
-/// MRI of an even choice of the examples with a femur or a hip bone.
-void add_images(std::vector<shape::HipExample>& examples, const AtlasExampleOptions& options,
-                const Monitor& monitor) {
-  const auto n = static_cast<int>(examples.size());
-  const int count = std::min(options.profile_hips, n);
-  for (std::size_t c = 0; c < options.contrasts.size(); ++c) {
-    for (int i = 0; i < count; ++i) {
-      auto& example = examples[static_cast<std::size_t>(i * n / count)];
-      const std::uint64_t seed = options.seed + 1000 * c + static_cast<std::uint64_t>(i);
-      example.images.push_back(simulated(example, options.contrasts[c], options, seed, {}));
-      monitor.check_cancelled();
-      monitor.progress("simulated " + options.contrasts[c], (i + 1.0) / count);
-    }
-  }
 }
 
 void check_exclusions(const std::vector<ScannedHip>& hips, const AtlasExampleOptions& options) {
@@ -237,7 +188,6 @@ std::vector<shape::HipExample> load_atlas_examples(const fs::path& data,
     monitor.check_cancelled();
   }
   sort_by_use(examples);
-  add_images(examples, options, monitor);
   return examples;
 }
 

@@ -32,11 +32,12 @@ Record build_atlas_file(const AtlasRequest& request, const fs::path& out, const 
   record.verb = "atlas";
   record.options = {{"exclude", joined(request.examples.exclude)},
                     {"exclude_structures", joined(request.examples.exclude_structures)},
-                    {"contrasts", joined(request.examples.contrasts)},
-                    {"profile_hips", std::int64_t{request.examples.profile_hips}},
-                    {"seed", static_cast<std::int64_t>(request.examples.seed)}};
+                    {"contrasts", joined(request.profiles.contrasts)},
+                    {"profile_hips", std::int64_t{request.profiles.n_hips}},
+                    {"seed", static_cast<std::int64_t>(request.profiles.seed)}};
   const auto examples = load_atlas_examples(request.data, request.examples, monitor);
   shape::Atlas atlas = shape::build_atlas(examples, {}, monitor);
+  update_atlas_profiles(atlas, request.profiles, monitor);
   atlas.attribution = kAttribution;
   io::write_atlas(out, atlas);
   record.figures["subjects"] = static_cast<std::int64_t>(atlas.subjects.size());
@@ -45,6 +46,7 @@ Record build_atlas_file(const AtlasRequest& request, const fs::path& out, const 
         std::int64_t{model.hierarchy.levels.back().n_vertices()};
     record.figures[model.name + "_modes"] =
         static_cast<std::int64_t>(model.shape.deviations.size());
+    record.figures[model.name + "_leave_one_out_mm"] = model.leave_one_out_error;
   }
   record.figures["size_mb"] = static_cast<double>(fs::file_size(out)) / 1e6;
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -3,6 +3,9 @@
 #include <coxa/mesh/voxelize.h>
 
 #include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
 
 namespace coxa::pipeline {
 namespace {
@@ -12,10 +15,19 @@ int paint_order(const std::string& name) {
   return name.find("cartilage") == std::string::npos ? 0 : 1;
 }
 
+/// Colours that 3D Slicer users know: bones ivory and sand, cartilages blue and teal.
+std::array<double, 3> colour_of(const std::string& name) {
+  if (name == "femur") return {0.95, 0.84, 0.57};
+  if (name == "hip_bone") return {0.87, 0.74, 0.62};
+  if (name == "femoral_cartilage") return {0.26, 0.55, 0.86};
+  if (name == "acetabular_cartilage") return {0.12, 0.68, 0.60};
+  return {0.6, 0.6, 0.6};
+}
+
 }  // namespace
 
-LabelMap make_label_map(const Volume& grid, const SurfaceSet& surfaces) {
-  LabelMap map;
+io::LabelMap make_label_map(const Volume& grid, const SurfaceSet& surfaces) {
+  io::LabelMap map;
   map.volume = grid;
   map.volume.values.assign(static_cast<std::size_t>(grid.n_voxels()), 0.0F);
   std::vector<std::string> order;
@@ -24,7 +36,7 @@ LabelMap make_label_map(const Volume& grid, const SurfaceSet& surfaces) {
                    [](const auto& a, const auto& b) { return paint_order(a) < paint_order(b); });
   for (const std::string& name : order) {
     const int label = static_cast<int>(map.labels.size()) + 1;
-    map.labels[name] = label;
+    map.labels.push_back({label, name, colour_of(name)});
     const auto inside = inside_samples(surfaces.at(name).mesh, grid.size,
                                        [&](const Vec3& p) { return grid.index(p); });
     for (std::size_t i = 0; i < inside.size(); ++i) {

@@ -6,11 +6,12 @@
 #include <coxa/io/markers.h>
 #include <coxa/io/motion_files.h>
 #include <coxa/io/movement_files.h>
-#include <coxa/io/track_model.h>
+#include <coxa/io/track_config.h>
 #include <coxa/motion/clinical_pattern.h>
-#include <coxa/motion/track.h>
 #include <coxa/pipeline/segment_stage.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace coxa::pipeline {
@@ -85,15 +86,11 @@ motion::HipMotion make_motion(const Subject& subject, const fs::path& folder,
     const auto pattern = io::read_pattern(movement_file(subject.motion.pattern));
     return motion::make_movement(pattern, subject.side, {.n_frames = subject.motion.frames});
   }
-  require(!subject.motion.config.empty(), subject.file.string(),
-          ": [motion] with markers needs config: the file that "
-          "says where the joint centre and the markers lie on the bones (docs/motion.md)");
-  const auto result =
-      motion::track_in_detail(io::read_markers(subject.motion.markers),
-                              io::read_hip_model(subject.motion.config), {}, monitor);
-  io::write_motion(folder / "tracked.csv", result.motion);
-  io::write_residuals(folder / "residuals.csv", result);
-  return thinned(result.motion, subject.motion.frames);
+  const motion::TrackedRecording tracked =
+      track_markers(subject.motion.markers, subject.motion.config, subject.side, monitor);
+  io::write_motion(folder / "tracked.csv", tracked.result.motion);
+  io::write_residuals(folder / "residuals.csv", tracked.result);
+  return thinned(tracked.result.motion, subject.motion.frames);
 }
 
 void add_figures(const motion::JointCentreResult& centre, const motion::BoneFrames& frames,
@@ -121,6 +118,21 @@ void write_centres(const fs::path& path, const motion::JointCentreResult& result
 }
 
 }  // namespace
+
+motion::TrackedRecording track_markers(const fs::path& markers, const fs::path& config,
+                                       std::optional<Side> side, const Monitor& monitor) {
+  io::TrackConfig setup;
+  if (!config.empty()) setup = io::read_track_config(config);
+  if (config.empty() && side) setup.setup.side = *side;
+  require(!side || setup.setup.side == *side, config.string(), " is for the ",
+          setup.setup.side == Side::left ? "left" : "right",
+          " hip, the subject file for the other");
+  const motion::MarkerData recording = io::read_markers(markers);
+  if (!setup.neutral_trial)
+    return motion::track_recording(recording, nullptr, setup.setup, monitor);
+  const motion::MarkerData neutral = io::read_markers(*setup.neutral_trial);
+  return motion::track_recording(recording, &neutral, setup.setup, monitor);
+}
 
 fs::path movement_file(const std::string& pattern) {
   if (fs::exists(pattern)) return pattern;

@@ -4,13 +4,12 @@
 #include <coxa/io/atlas_file.h>
 #include <coxa/io/dicom.h>
 #include <coxa/io/files.h>
+#include <coxa/io/labels.h>
 #include <coxa/io/landmarks.h>
 #include <coxa/io/surfaces.h>
 #include <coxa/io/volumes.h>
 #include <coxa/measure/thickness.h>
 #include <coxa/pipeline/label_map.h>
-
-#include <nlohmann/json.hpp>
 
 namespace coxa::pipeline {
 namespace fs = std::filesystem;
@@ -83,16 +82,8 @@ void add_thickness(SurfaceSet& surfaces) {
        {std::pair{"femoral_cartilage", "femur"}, {"acetabular_cartilage", "hip_bone"}}) {
     if (!surfaces.count(cartilage) || !surfaces.count(bone)) continue;
     surfaces[bone].fields["cartilage_thickness_mm"] =
-        measure::cartilage_thickness(surfaces[bone].mesh, surfaces[cartilage].mesh);
+        measure::closed_cartilage_thickness(surfaces[bone].mesh, surfaces[cartilage].mesh);
   }
-}
-
-void write_labels(const fs::path& folder, const Volume& grid, const SurfaceSet& surfaces) {
-  const LabelMap map = make_label_map(grid, surfaces);
-  io::write_volume(folder / "labels.nii.gz", map.volume, io::VoxelType::uint8);
-  nlohmann::json names = nlohmann::json::object();
-  for (const auto& [name, label] : map.labels) names[std::to_string(label)] = name;
-  io::write_bytes(folder / "labels.json", names.dump(2) + "\n");
 }
 
 void add_figures(const segment::SegmentResult& result, Record& record) {
@@ -147,7 +138,7 @@ Record run_segment_stage(const SegmentRequest& request, const fs::path& folder, 
       io::write_surface(partial / (name + ".vtp"), surface);
       io::write_surface(partial / (name + ".ply"), surface);
     }
-    write_labels(partial, images.front(), result.surfaces);
+    io::write_labels(partial / "labels.nii.gz", make_label_map(images.front(), result.surfaces));
     add_figures(result, record);
     record.warnings.insert(record.warnings.end(), result.warnings.begin(), result.warnings.end());
   };

@@ -21,13 +21,6 @@ fs::path existing(const io::Table& table, const std::string& key,
   return *path;
 }
 
-Side read_side(const io::Table& table) {
-  const auto text = table.get<std::string>("side");
-  require(text == "left" || text == "right", table.where("side"),
-          " must be \"left\" or \"right\", got \"", text, "\"");
-  return text == "left" ? Side::left : Side::right;
-}
-
 std::vector<ImageEntry> read_images(const io::Table& root) {
   std::vector<ImageEntry> images;
   for (const io::Table& table : root.tables("image")) {
@@ -82,7 +75,16 @@ void check_joint(const io::Table& table, const JointEntry& joint) {
           " must be \"corotational\" or \"st_venant_kirchhoff\", got \"", joint.law, "\"");
 }
 
-JointEntry read_joint(const io::Table& root) {
+}  // namespace
+
+Side read_side(const io::Table& table) {
+  const auto text = table.get<std::string>("side");
+  require(text == "left" || text == "right", table.where("side"),
+          " must be \"left\" or \"right\", got \"", text, "\"");
+  return text == "left" ? Side::left : Side::right;
+}
+
+JointEntry read_joint_entry(const io::Table& root) {
   JointEntry joint;
   const auto table = root.find_table("joint");
   if (!table) return joint;
@@ -98,8 +100,6 @@ JointEntry read_joint(const io::Table& root) {
   check_joint(*table, joint);
   return joint;
 }
-
-}  // namespace
 
 Subject read_subject(const fs::path& path) {
   const io::Table root = io::Table::read(path);
@@ -122,7 +122,7 @@ Subject read_subject(const fs::path& path) {
   }
   subject.motion = read_motion(root);
   subject.mesh = read_mesh(root);
-  subject.joint = read_joint(root);
+  subject.joint = read_joint_entry(root);
   root.finish();
   return subject;
 }

@@ -14,11 +14,6 @@ struct AtlasExampleOptions {
   std::vector<std::string> exclude;
   /// Structures left out of a set, "set:structure", for example "libhip:hip_bone".
   std::vector<std::string> exclude_structures;
-  std::vector<std::string> contrasts = {"t1",
-                                        "dess"};  ///< of the images simulated to learn profiles
-  int profile_hips = 6;    ///< >= 1: hips per contrast whose MRI is simulated to learn profiles
-  double voxel = 0.8;      ///< mm, > 0, of those images
-  std::uint64_t seed = 1;  ///< of their noise and surroundings
   /// Folders of one hip each that a user segmented: femur.ply, hip_bone.ply, … with the side in the
   /// folder's name.
   std::vector<std::filesystem::path> own;

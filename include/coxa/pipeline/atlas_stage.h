@@ -2,6 +2,7 @@
 
 #include <coxa/core/monitor.h>
 #include <coxa/pipeline/atlas_examples.h>
+#include <coxa/pipeline/atlas_profiles.h>
 #include <coxa/pipeline/record.h>
 
 #include <filesystem>
@@ -11,6 +12,7 @@ namespace coxa::pipeline {
 struct AtlasRequest {
   std::filesystem::path data = "../shared/data";
   AtlasExampleOptions examples;
+  AtlasProfileOptions profiles;
 };
 
 /// Builds an atlas and writes it whole, with `<stem>.json` beside it.

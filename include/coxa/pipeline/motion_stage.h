@@ -4,10 +4,12 @@
 #include <coxa/motion/bone_frames.h>
 #include <coxa/motion/hip_motion.h>
 #include <coxa/motion/joint_centre.h>
+#include <coxa/motion/track_setup.h>
 #include <coxa/pipeline/stage.h>
 #include <coxa/pipeline/subject.h>
 
 #include <filesystem>
+#include <optional>
 
 namespace coxa::pipeline {
 
@@ -24,6 +26,15 @@ Record run_motion_stage(const Subject& subject, const std::filesystem::path& seg
 
 /// Reads them back. @throws Error bad_file if they are not there
 MotionArtefacts read_motion_artefacts(const std::filesystem::path& folder, Side side);
+
+/// Reads a recording and tracks it as the configuration says.
+/// @param config  TOML or a hip model as JSON; empty: markers are told by their labels, and the
+/// recording's own
+///                frames calibrate
+/// @param side    what the configuration must be for; nullopt: whatever it says
+motion::TrackedRecording track_markers(const std::filesystem::path& markers,
+                                       const std::filesystem::path& config,
+                                       std::optional<Side> side, const Monitor& monitor);
 
 /// The pattern's file: `pattern` itself where it is one, else data/movements/<pattern>.toml.
 /// @throws Error bad_input listing the movements there are

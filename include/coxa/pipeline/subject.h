@@ -1,6 +1,7 @@
 #pragma once
 
 #include <coxa/core/types.h>
+#include <coxa/io/config.h>
 
 #include <filesystem>
 #include <optional>
@@ -57,6 +58,12 @@ struct Subject {
 /// out of range,
 ///         or an input file that does not exist
 Subject read_subject(const std::filesystem::path& path);
+
+/// The key `side` of a table. @throws Error bad_input unless it is left or right
+Side read_side(const io::Table& table);
+/// The table [joint] of a subject or joint file, defaults where it is missing.
+/// @throws Error bad_input for an unknown key or a value out of range
+JointEntry read_joint_entry(const io::Table& root);
 
 /// The atlas that ships with coxa; the environment variable COXA_DATA overrides its folder.
 std::filesystem::path shipped_data(const std::string& relative);

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <coxa/core/monitor.h>
+#include <coxa/joint/simulate.h>
+#include <coxa/pipeline/stage.h>
+#include <coxa/pipeline/subject.h>
+
+#include <filesystem>
+#include <optional>
+
+namespace coxa::pipeline {
+
+/// Everything the simulation of one hip reads: a joint file (`JOINT.toml`), paths resolved.
+struct JointRequest {
+  Side side = Side::right;
+  std::filesystem::path acetabular_cartilage, femoral_cartilage;  ///< VTU with tagged facets
+  std::filesystem::path hip_bone, femur;  ///< surfaces; both empty: no bony limit
+  std::filesystem::path motion;           ///< folder of a motion stage
+  JointEntry joint;
+};
+
+/// @throws Error bad_input for a missing or unknown key, a value out of range, or a file that does
+/// not exist
+JointRequest read_joint_request(const std::filesystem::path& path);
+/// The request as TOML, paths relative to `folder`.
+std::string to_toml(const JointRequest& request, const std::filesystem::path& folder);
+
+/// What the joint stage computed, kept for pictures.
+struct JointOutcome {
+  joint::JointModel model;
+  motion::HipMotion motion;
+  joint::JointResult result;
+};
+
+/// Simulates the movement into `folder`: frames/*.vtu with results.pvd (ParaView), summary.csv,
+/// joint.toml and the record joint.json. Frames that did not converge or lie beyond the bony limit
+/// are named and carry no stress.
+/// @throws Error no_convergence if no frame converged
+Record run_joint_stage(const JointRequest& request, const std::filesystem::path& folder,
+                       Reuse reuse, const Monitor& monitor);
+
+}  // namespace coxa::pipeline

@@ -1,0 +1,86 @@
+#include <coxa/io/files.h>
+#include <coxa/io/motion_files.h>
+#include <coxa/io/track_model.h>
+#include <coxa/pipeline/motion_stage.h>
+#include <coxa/pipeline/record.h>
+
+#include <chrono>
+
+#include "commands.h"
+
+namespace coxa::app {
+namespace {
+namespace fs = std::filesystem;
+
+struct TrackArguments {
+  std::string markers, model, config, out;
+};
+
+/// The hip model of `--model DIR`: its hip_model.json; a file is taken as it is.
+fs::path model_file(const TrackArguments& arguments) {
+  if (arguments.model.empty()) return arguments.config;
+  return fs::is_directory(arguments.model) ? fs::path(arguments.model) / "hip_model.json"
+                                           : fs::path(arguments.model);
+}
+
+void add_figures(const motion::TrackedRecording& tracked, pipeline::Record& record) {
+  const motion::HipMotion& motion = tracked.result.motion;
+  record.figures["frames"] = std::int64_t{motion.n_frames()};
+  record.figures["thigh_markers"] = static_cast<std::int64_t>(tracked.result.thigh_labels.size());
+  record.figures["side"] = std::string(tracked.model.side == Side::left ? "left" : "right");
+  record.figures["method"] = motion.method;
+  record.figures["model"] = tracked.model.source;
+  record.figures["converged"] = tracked.result.report.converged;
+  double sum = 0.0, count = 0.0;
+  for (const double r : tracked.result.residuals.reshaped()) {
+    if (r == r) sum += r * r, count += 1.0;
+  }
+  if (count > 0.0) record.figures["residual_rms_mm"] = std::sqrt(sum / count);
+  record.warnings = motion.warnings;
+}
+
+void run_track(const TrackArguments& arguments, Context& context) {
+  const auto start = std::chrono::steady_clock::now();
+  const Monitor monitor = context.monitor();
+  pipeline::Record record;
+  record.verb = "track";
+  record.inputs["markers"] = io::sha256_of_path(arguments.markers);
+  const fs::path model = model_file(arguments);
+  if (!model.empty()) record.inputs["model"] = io::sha256_of_path(model);
+  const auto tracked = pipeline::track_markers(arguments.markers, model, {}, monitor);
+  const fs::path out = arguments.out, stem = out.parent_path() / io::stem_of(out);
+  if (io::extension_of(out) == ".mot") {
+    io::write_opensim_motion(out, tracked.result.motion, tracked.model.side);
+  } else {
+    io::write_motion(out, tracked.result.motion);
+  }
+  io::write_residuals(stem.string() + "_residuals.csv", tracked.result);
+  add_figures(tracked, record);
+  for (const std::string& text : record.warnings) monitor.warn(text);
+  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  record.peak_memory_mb = pipeline::peak_memory_mb();
+  pipeline::write_record(stem.string() + ".json", record);
+  context.print_result(out.string(), record);
+}
+
+}  // namespace
+
+void add_track(CLI::App& app, Context& context) {
+  auto* verb = app.add_subcommand("track", "the femur's movement from skin markers");
+  auto arguments = std::make_shared<TrackArguments>();
+  verb->add_option("--markers", arguments->markers, "C3D, TRC or CSV")
+      ->required()
+      ->check(CLI::ExistingFile);
+  auto* model = verb->add_option("--model", arguments->model,
+                                 "hip model: joint centre and markers on the bones (JSON, or a "
+                                 "folder with hip_model.json)")
+                    ->check(CLI::ExistingPath);
+  verb->add_option("--config", arguments->config,
+                   "how the recording is to be read and tracked (TOML, docs/motion.md)")
+      ->check(CLI::ExistingFile)
+      ->excludes(model);
+  verb->add_option("--out", arguments->out, "CSV, or OpenSim .mot")->required();
+  verb->callback([arguments, &context] { run_track(*arguments, context); });
+}
+
+}  // namespace coxa::app

@@ -1,0 +1,90 @@
+#include <coxa/pipeline/atlas_profiles.h>
+
+#include <coxa/core/error.h>
+#include <coxa/image/phantom.h>
+#include <coxa/shape/profiles.h>
+#include <coxa/shape/virtual_hip.h>
+
+#include <deque>
+#include <map>
+
+namespace coxa::pipeline {
+namespace {
+
+// a right hip lies that far to the right and in front of the body's axis, mm
+const Vec3 kBodyFromHip = Vec3(85.0, 20.0, 0.0);
+constexpr double kMargin = 12.0;       // mm of image around the surfaces
+constexpr double kCortex = 1.0;        // mm, of the hip bone
+constexpr double kTouchingGap = 0.05;  // mm
+constexpr double kFluidGap = 0.5;      // mm
+
+Contrast contrast_named(const std::string& name) {
+  const std::map<std::string, Contrast> known{
+      {"t1", Contrast::t1}, {"t2", Contrast::t2}, {"pd", Contrast::pd}, {"dess", Contrast::dess}};
+  const auto it = known.find(name);
+  require(it != known.end(), "no contrast \"", name, "\"; there are t1, t2, pd, dess");
+  return it->second;
+}
+
+std::vector<TissueSurface> tissues_of(const shape::VirtualHip& hip) {
+  std::vector<TissueSurface> tissues;
+  for (const char* name : {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"}) {
+    const TriMesh& mesh = hip.at(name);
+    const bool bone = std::string(name).find("cartilage") == std::string::npos;
+    TissueSurface tissue{
+        mesh.points, mesh.triangles, bone ? Tissue::marrow : Tissue::cartilage, {}};
+    if (std::string(name) == "femur") tissue.shell = shell_thicker_below(mesh.points, Vec3::Zero());
+    if (std::string(name) == "hip_bone") tissue.shell = VecX::Constant(mesh.n_vertices(), kCortex);
+    tissues.push_back(std::move(tissue));
+  }
+  return tissues;
+}
+
+PhantomOptions phantom_around(const shape::VirtualHip& hip, const AtlasProfileOptions& options) {
+  Vec3 low = Vec3::Constant(kInfinity), high = -low;
+  for (const auto& [name, mesh] : hip) {
+    low = low.cwiseMin(mesh.points.colwise().minCoeff().transpose());
+    high = high.cwiseMax(mesh.points.colwise().maxCoeff().transpose());
+  }
+  PhantomOptions phantom;
+  phantom.voxel = Vec3::Constant(options.voxel);
+  phantom.field_of_view = high - low + Vec3::Constant(2.0 * kMargin);
+  phantom.centre = 0.5 * (low + high);
+  phantom.body_centre = kBodyFromHip;
+  phantom.bias = 0.0;
+  phantom.snr = options.snr;
+  return phantom;
+}
+
+}  // namespace
+
+void update_atlas_profiles(shape::Atlas& atlas, const AtlasProfileOptions& options,
+                           const Monitor& monitor) {
+  require(options.n_hips >= 1, "at least one hip per class of profiles, got ", options.n_hips);
+  require(options.voxel > 0.0, "voxel must be positive, got ", options.voxel, " mm");
+  // the hips and images are referred to until the profiles are learned: a deque keeps their places
+  std::deque<shape::VirtualHip> hips;
+  std::deque<Volume> images;
+  std::vector<shape::ImagedHip> imaged;
+  Rng rng(options.seed);
+  const double n_images = 2.0 * options.n_hips * static_cast<double>(options.contrasts.size());
+  for (const bool fluid : {false, true}) {
+    const double gap = fluid ? kFluidGap : kTouchingGap;
+    for (int i = 0; i < options.n_hips; ++i) {
+      hips.push_back(shape::draw_virtual_hip(atlas, rng, {.least_gap = gap}));
+      for (const std::string& contrast : options.contrasts) {
+        PhantomOptions phantom = phantom_around(hips.back(), options);
+        phantom.contrast = contrast_named(contrast);
+        phantom.joint_filling = fluid ? Tissue::fluid : Tissue::cartilage;
+        phantom.seed = options.seed + imaged.size();
+        monitor.check_cancelled();
+        images.push_back(simulate_mri(tissues_of(hips.back()), phantom));
+        imaged.push_back({fluid ? contrast + "_fluid" : contrast, &hips.back(), &images.back()});
+        monitor.progress("profiles", static_cast<double>(imaged.size()) / n_images);
+      }
+    }
+  }
+  shape::update_profiles(atlas, imaged);
+}
+
+}  // namespace coxa::pipeline

@@ -1,0 +1,148 @@
+#include "joint_files.h"
+
+#include <coxa/core/error.h>
+#include <coxa/geom/rigid_transform.h>
+#include <coxa/io/collection.h>
+#include <coxa/io/tets.h>
+
+#include <cstdio>
+
+namespace coxa::pipeline {
+namespace fs = std::filesystem;
+namespace {
+
+std::string numbered(const std::string& stem, Index frame) {
+  std::string digits = std::to_string(frame);
+  return stem + "_" + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits +
+         ".vtu";
+}
+
+/// Symmetric tensors as 3×3 rows, which ParaView knows: from xx yy zz xy yz zx.
+MatX full_tensors(const MatX& six) {
+  static constexpr int kPlace[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2};
+  MatX nine(six.rows(), 9);
+  for (int c = 0; c < 9; ++c) nine.col(c) = six.col(kPlace[c]);
+  return nine;
+}
+
+io::TetFields element_fields(const joint::StressFields& fields) {
+  io::TetFields out;
+  out.at_tets["green_strain"] = full_tensors(fields.green_strain);
+  out.at_tets["cauchy_stress_MPa"] = full_tensors(fields.cauchy_stress);
+  out.at_tets["principal_stress_MPa"] = fields.principal_stress;
+  out.at_tets["principal_strain"] = fields.principal_strain;
+  out.at_tets["von_mises_MPa"] = fields.von_mises;
+  return out;
+}
+
+void write_frame(const fs::path& folder, const joint::JointModel& model,
+                 const joint::FrameResult& frame) {
+  io::TetFields acetabular = element_fields(joint::acetabular_fields(model, frame));
+  acetabular.at_points["displacement_mm"] = frame.acetabular_displacement;
+  acetabular.at_points["contact_pressure_MPa"] = frame.acetabular_pressure;
+  acetabular.at_points["gap_mm"] = frame.acetabular_gap;
+  TetMesh mesh = model.acetabular_cartilage;
+  mesh.points += frame.acetabular_displacement;
+  io::write_tets(folder / numbered("acetabular", frame.frame), mesh, acetabular);
+
+  io::TetFields femoral = element_fields(joint::femoral_fields(model, frame));
+  femoral.at_points["displacement_mm"] = frame.femoral_displacement;
+  femoral.at_points["contact_pressure_MPa"] = frame.femoral_pressure;
+  mesh = model.femoral_cartilage;
+  mesh.points = transformed(mesh.points, frame.X_II) + frame.femoral_displacement;
+  io::write_tets(folder / numbered("femoral", frame.frame), mesh, femoral);
+}
+
+std::string status_name(joint::FrameStatus status) {
+  switch (status) {
+    case joint::FrameStatus::converged:
+      return "converged";
+    case joint::FrameStatus::failed:
+      return "failed";
+    case joint::FrameStatus::beyond_bony_limit:
+      return "beyond_bony_limit";
+  }
+  return "";
+}
+
+/// A comma and the number; an empty cell where it is not one.
+std::string cell(double value) {
+  if (!(value == value)) return ",";
+  char text[32];
+  std::snprintf(text, sizeof text, ",%.6g", value);
+  return text;
+}
+
+std::string header() {
+  std::string text =
+      "frame,time_s,status,flexion_deg,adduction_deg,internal_rotation_deg,translation_x_mm,"
+      "translation_y_mm,"
+      "translation_z_mm,bone_clearance_mm,peak_pressure_p99_MPa,peak_pressure_p95_MPa,peak_"
+      "pressure_5mm2_MPa,"
+      "mean_pressure_MPa,contact_area_mm2,contact_area_percent,centre_of_pressure_x_mm,centre_of_"
+      "pressure_y_mm,"
+      "centre_of_pressure_z_mm,centre_of_pressure_hour,penetration_mm,contact_force_N,force_error_"
+      "percent,"
+      "reaction_error,elastic_energy_Nmm";
+  for (int h = 0; h < 12; ++h) text += join_text(",strain_", h == 0 ? 12 : h, "_oclock");
+  for (const char* region : joint::kRegionNames) text += join_text(",strain_", region);
+  return text + ",residual,iterations,seconds,reason\n";
+}
+
+std::string contact_cells(const joint::FrameResult& f) {
+  const joint::ContactFigures& c = f.contact;
+  std::string text = cell(c.peak_pressure_p99) + cell(c.peak_pressure_p95) +
+                     cell(c.peak_pressure_patch) + cell(c.mean_pressure) + cell(c.contact_area) +
+                     cell(100.0 * c.contact_share);
+  for (int i = 0; i < 3; ++i) text += cell(c.centre_of_pressure[i]);
+  text += cell(c.centre_hour) + cell(c.penetration) + cell(f.balance.contact_force.norm()) +
+          cell(100.0 * f.balance.force_error) + cell(f.balance.reaction_error) +
+          cell(f.balance.elastic_energy);
+  for (const joint::SectorFigures& sector : f.sectors) text += cell(sector.strain);
+  for (const joint::SectorFigures& region : f.regions) text += cell(region.strain);
+  return text + cell(f.residual) + cell(f.iterations) + cell(f.seconds);
+}
+
+/// Cells of a frame without a result: as many commas as `contact_cells` has.
+std::string no_contact_cells() {
+  return std::string(15 + 12 + joint::kRegionNames.size() + 3, ',');
+}
+
+std::string quoted(std::string text) {
+  for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2)
+    text.insert(at, "\"");
+  return text.empty() ? "" : "\"" + text + "\"";
+}
+
+}  // namespace
+
+void write_frames(const fs::path& folder, const joint::JointModel& model,
+                  const motion::HipMotion& motion, const joint::JointResult& result) {
+  std::vector<io::CollectionEntry> entries;
+  for (const joint::FrameResult& frame : result.frames) {
+    if (frame.status != joint::FrameStatus::converged) continue;
+    write_frame(folder / "frames", model, frame);
+    const double time = motion.time[static_cast<std::size_t>(frame.frame)];
+    for (const char* part : {"acetabular", "femoral"}) {
+      entries.push_back({time, std::string(part) + "_cartilage",
+                         fs::path("frames") / numbered(part, frame.frame)});
+    }
+  }
+  io::write_collection(folder / "results.pvd", entries);
+}
+
+std::string summary_csv(const motion::HipMotion& motion, const joint::JointResult& result) {
+  std::string text = header();
+  for (const joint::FrameResult& f : result.frames) {
+    text += join_text(f.frame) + cell(motion.time[static_cast<std::size_t>(f.frame)]) + "," +
+            status_name(f.status) + cell(degrees(f.angles.flexion)) +
+            cell(degrees(f.angles.adduction)) + cell(degrees(f.angles.internal_rotation));
+    const bool converged = f.status == joint::FrameStatus::converged;
+    for (int i = 0; i < 3; ++i) text += cell(converged ? f.translation[i] : kNaN);
+    text += cell(f.bone_clearance) + (converged ? contact_cells(f) : no_contact_cells()) + "," +
+            quoted(f.reason) + "\n";
+  }
+  return text;
+}
+
+}  // namespace coxa::pipeline

@@ -1,0 +1,168 @@
+#include <coxa/pipeline/joint_stage.h>
+
+#include <coxa/core/error.h>
+#include <coxa/io/config.h>
+#include <coxa/io/files.h>
+#include <coxa/io/surfaces.h>
+#include <coxa/io/tets.h>
+#include <coxa/pipeline/motion_stage.h>
+
+#include "joint_files.h"
+
+namespace coxa::pipeline {
+namespace fs = std::filesystem;
+namespace {
+
+joint::JointModel read_model(const JointRequest& request, const motion::BoneFrames& frames) {
+  joint::JointModel model;
+  model.side = request.side;
+  model.acetabular_cartilage = io::read_tets(request.acetabular_cartilage);
+  model.femoral_cartilage = io::read_tets(request.femoral_cartilage);
+  if (!request.hip_bone.empty()) model.hip_bone = io::read_surface(request.hip_bone);
+  if (!request.femur.empty()) model.femur = io::read_surface(request.femur);
+  model.X_IP = frames.pelvis.X_IB;
+  model.X_IF = frames.femur.X_IB;
+  model.material.law = request.joint.law == "corotational"
+                           ? joint::MaterialLaw::corotational
+                           : joint::MaterialLaw::st_venant_kirchhoff;
+  model.material.youngs_modulus = request.joint.youngs_modulus;
+  model.material.poissons_ratio = request.joint.poisson_ratio;
+  return model;
+}
+
+Record wanted_record(const JointRequest& request) {
+  Record record;
+  record.verb = "joint";
+  const JointEntry& j = request.joint;
+  record.options = {{"side", std::string(request.side == Side::left ? "left" : "right")},
+                    {"loading", std::string(j.loading == Loading::joint_force ? "joint_force"
+                                                                              : "prescribed_pose")},
+                    {"force_N", j.force},
+                    {"young_mpa", j.youngs_modulus},
+                    {"poisson", j.poisson_ratio},
+                    {"law", j.law}};
+  record.inputs = {{"acetabular_cartilage", io::sha256_of_path(request.acetabular_cartilage)},
+                   {"femoral_cartilage", io::sha256_of_path(request.femoral_cartilage)},
+                   {"motion", io::sha256_of_path(request.motion / "motion.csv")},
+                   {"frames", io::sha256_of_path(request.motion / "frames.json")}};
+  if (!request.hip_bone.empty()) record.inputs["hip_bone"] = io::sha256_of_path(request.hip_bone);
+  if (!request.femur.empty()) record.inputs["femur"] = io::sha256_of_path(request.femur);
+  return record;
+}
+
+joint::LoadCase load_case(const JointRequest& request, const joint::JointModel& model) {
+  return request.joint.loading == Loading::joint_force
+             ? joint::passive_examination(model, request.joint.force)
+             : joint::prescribed_pose();
+}
+
+void add_limit(const joint::BonyLimit& limit, Record& record) {
+  record.figures["bony_limit_flexion_deg"] = degrees(limit.angles.flexion);
+  record.figures["bony_limit_adduction_deg"] = degrees(limit.angles.adduction);
+  record.figures["bony_limit_internal_rotation_deg"] = degrees(limit.angles.internal_rotation);
+  record.figures["bony_limit_clock_hour"] = limit.hour;
+  record.figures["bony_limit_place_lps_mm"] =
+      join_text(limit.place.x(), " ", limit.place.y(), " ", limit.place.z());
+}
+
+void add_sensitivity(const joint::CentreSensitivity& sensitivity, Record& record) {
+  double lowest = kInfinity, highest = -kInfinity;
+  for (const double peak : sensitivity.peak.reshaped()) {
+    if (peak == peak) lowest = std::min(lowest, peak), highest = std::max(highest, peak);
+  }
+  record.figures["sensitivity_shift_mm"] = sensitivity.shift;
+  record.figures["sensitivity_peak_at_rest_mpa"] = sensitivity.at_rest;
+  if (lowest > highest) return;
+  record.figures["sensitivity_lowest_peak_mpa"] = lowest;
+  record.figures["sensitivity_highest_peak_mpa"] = highest;
+}
+
+void add_figures(const joint::JointResult& result, Record& record) {
+  record.figures["frames"] = static_cast<std::int64_t>(result.frames.size());
+  record.figures["frames_converged"] = std::int64_t{result.n_converged()};
+  record.figures["load"] = result.load_description;
+  double peak = 0.0, force_error = 0.0, reaction_error = 0.0;
+  for (const joint::FrameResult& frame : result.frames) {
+    if (frame.status == joint::FrameStatus::failed) {
+      record.warnings.push_back(
+          join_text("frame ", frame.frame, " did not converge: ", frame.reason));
+    }
+    if (frame.status != joint::FrameStatus::converged) continue;
+    peak = std::max(peak, frame.contact.peak_pressure_p99);
+    force_error = std::max(force_error, frame.balance.force_error);
+    reaction_error = std::max(reaction_error, frame.balance.reaction_error);
+  }
+  record.figures["largest_peak_pressure_p99_mpa"] = peak;
+  record.figures["largest_force_error_percent"] = 100.0 * force_error;
+  record.figures["largest_reaction_error"] = reaction_error;
+  if (result.bony_limit) add_limit(*result.bony_limit, record);
+  if (result.sensitivity) add_sensitivity(*result.sensitivity, record);
+}
+
+fs::path existing(const io::Table& table, const std::string& key) {
+  const auto path = table.find_path(key);
+  require(path.has_value(), table.where(key), " is needed: the path of a file");
+  require(fs::exists(*path), table.where(key), ": there is no ", path->string());
+  return *path;
+}
+
+}  // namespace
+
+JointRequest read_joint_request(const fs::path& path) {
+  const io::Table root = io::Table::read(path);
+  JointRequest request;
+  request.side = read_side(root);
+  request.acetabular_cartilage = existing(root, "acetabular_cartilage");
+  request.femoral_cartilage = existing(root, "femoral_cartilage");
+  if (root.has("hip_bone") || root.has("femur")) {
+    request.hip_bone = existing(root, "hip_bone");
+    request.femur = existing(root, "femur");
+  }
+  request.motion = existing(root, "motion");
+  request.joint = read_joint_entry(root);
+  root.finish();
+  return request;
+}
+
+std::string to_toml(const JointRequest& request, const fs::path& folder) {
+  const auto relative = [&](const fs::path& path) {
+    return fs::relative(path, folder).generic_string();
+  };
+  const JointEntry& j = request.joint;
+  std::string text =
+      join_text("side = \"", request.side == Side::left ? "left" : "right", "\"\n",
+                "acetabular_cartilage = \"", relative(request.acetabular_cartilage), "\"\n",
+                "femoral_cartilage = \"", relative(request.femoral_cartilage), "\"\n");
+  if (!request.hip_bone.empty()) {
+    text += join_text("hip_bone = \"", relative(request.hip_bone), "\"\nfemur = \"",
+                      relative(request.femur), "\"\n");
+  }
+  text += join_text("motion = \"", relative(request.motion), "\"\n\n[joint]\nloading = \"",
+                    j.loading == Loading::joint_force ? "joint_force" : "prescribed_pose",
+                    "\"\nforce_N = ", j.force, "\nyoung_mpa = ", j.youngs_modulus,
+                    "\npoisson = ", j.poisson_ratio, "\nlaw = \"", j.law, "\"\n");
+  return text;
+}
+
+Record run_joint_stage(const JointRequest& request, const fs::path& folder, Reuse reuse,
+                       const Monitor& monitor) {
+  const auto body = [&](const fs::path& partial, Record& record) {
+    const MotionArtefacts artefacts = read_motion_artefacts(request.motion, request.side);
+    const joint::JointModel model = read_model(request, artefacts.frames);
+    const joint::JointResult result =
+        joint::simulate(model, artefacts.motion, load_case(request, model), {},
+                        part_of(monitor, "joint", 0.0, 0.95));
+    if (result.n_converged() == 0) {
+      fail(ErrorCode::no_convergence,
+           "no frame of the movement converged; frame 0: ", result.frames.front().reason);
+    }
+    add_figures(result, record);
+    write_frames(partial, model, artefacts.motion, result);
+    io::write_bytes(partial / "summary.csv", summary_csv(artefacts.motion, result));
+    io::write_bytes(partial / "joint.toml", to_toml(request, folder));
+    for (const std::string& text : record.warnings) monitor.warn(text);
+  };
+  return run_stage(folder, wanted_record(request), reuse, monitor, body);
+}
+
+}  // namespace coxa::pipeline

@@ -1,0 +1,128 @@
+#include <coxa/pipeline/mesh_stage.h>
+
+#include <coxa/core/error.h>
+#include <coxa/io/files.h>
+#include <coxa/io/surfaces.h>
+#include <coxa/io/tets.h>
+#include <coxa/mesh/repair.h>
+#include <coxa/mesh/validate.h>
+#include <coxa/meshing/bone_side.h>
+#include <coxa/pipeline/segment_stage.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace coxa::pipeline {
+namespace fs = std::filesystem;
+namespace {
+
+/// The surface made valid, with what was changed as warnings.
+TriMesh usable_surface(const TriMesh& surface, const std::string& name, Record& record,
+                       const Monitor& monitor) {
+  const ValidityReport report = validate(surface);
+  if (report.valid()) return surface;
+  try {
+    const Repaired repaired = repair(surface);
+    for (const std::string& line : repaired.report.lines()) {
+      record.warnings.push_back(name + ": " + line);
+      monitor.warn(record.warnings.back());
+    }
+    return repaired.mesh;
+  } catch (const Error& error) {
+    fail(error.code(), name, ": ", error.what());
+  }
+}
+
+std::string method_name(meshing::Method method) {
+  switch (method) {
+    case meshing::Method::automatic:
+      return "automatic";
+    case meshing::Method::medial:
+      return "medial";
+    case meshing::Method::lattice:
+      return "lattice";
+  }
+  return "";
+}
+
+void add_options(const meshing::MeshingOptions& options, Record& record) {
+  record.options = {{"method", method_name(options.method)},
+                    {"max_tets", std::int64_t{options.max_tets}},
+                    {"cell_per_thickness", options.cell_per_thickness},
+                    {"rim_rounding_mm", options.rim_rounding},
+                    {"nodes_per_element",
+                     std::int64_t{options.order == meshing::ElementOrder::ten_node ? 10 : 4}},
+                    {"improvement_rounds", std::int64_t{options.improvement_rounds}}};
+  if (options.layers) record.options["layers"] = std::int64_t{*options.layers};
+}
+
+void add_figures(const meshing::MeshingResult& result, const std::string& prefix, Record& record) {
+  const meshing::MeshingReport& report = result.report;
+  record.figures[prefix + "tets"] = std::int64_t{result.mesh.n_tets()};
+  record.figures[prefix + "method"] = method_name(report.method);
+  record.figures[prefix + "layers"] = std::int64_t{report.layers};
+  record.figures[prefix + "aspect_mean"] = report.quality.aspect_mean;
+  record.figures[prefix + "aspect_p05"] = report.quality.aspect_p05;
+  record.figures[prefix + "aspect_min"] = report.quality.aspect_min;
+  record.figures[prefix + "dihedral_min_deg"] = degrees(report.quality.dihedral_min);
+  record.figures[prefix + "dihedral_max_deg"] = degrees(report.quality.dihedral_max);
+  record.figures[prefix + "rim_rounding_mm"] = report.rim_rounding;
+  for (const std::string& note : report.notes) record.warnings.push_back(prefix + note);
+}
+
+bool has_sheet_tags(const TetMesh& mesh) {
+  return std::find(mesh.facet_tags.begin(), mesh.facet_tags.end(), FacetTag::articular_side) !=
+         mesh.facet_tags.end();
+}
+
+}  // namespace
+
+Record run_mesh_file(const MeshRequest& request, const fs::path& out, const Monitor& monitor) {
+  const auto start = std::chrono::steady_clock::now();
+  Record record;
+  record.verb = "mesh";
+  add_options(request.options, record);
+  record.inputs["surface"] = io::sha256_of_path(request.surface);
+  const TriMesh surface =
+      usable_surface(io::read_surface(request.surface), request.surface.string(), record, monitor);
+  meshing::MeshingResult result = meshing::mesh_surface(surface, request.options, monitor);
+  if (!request.bone.empty() && has_sheet_tags(result.mesh)) {
+    record.inputs["bone"] = io::sha256_of_path(request.bone);
+    meshing::update_bone_side(result.mesh, io::read_surface(request.bone));
+  }
+  add_figures(result, "", record);
+  io::write_tets(out, result.mesh);
+  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  record.peak_memory_mb = peak_memory_mb();
+  write_record(out.parent_path() / (io::stem_of(out) + ".json"), record);
+  return record;
+}
+
+Record run_mesh_stage(const fs::path& segment_folder, const meshing::MeshingOptions& options,
+                      const fs::path& folder, Reuse reuse, const Monitor& monitor) {
+  Record wanted;
+  wanted.verb = "mesh";
+  add_options(options, wanted);
+  wanted.inputs["segment"] = record_key(read_record(segment_folder / "segment.json"));
+  const auto body = [&](const fs::path& partial, Record& record) {
+    const SurfaceSet surfaces = read_surfaces(segment_folder);
+    double done = 0.0;
+    for (const auto& [cartilage, bone] :
+         {std::pair{"femoral_cartilage", "femur"}, {"acetabular_cartilage", "hip_bone"}}) {
+      require(surfaces.count(cartilage) && surfaces.count(bone), segment_folder.string(), " lacks ",
+              cartilage, " or ", bone);
+      const TriMesh surface =
+          usable_surface(surfaces.at(cartilage).mesh, cartilage, record, monitor);
+      meshing::MeshingResult result =
+          meshing::mesh_surface(surface, options, part_of(monitor, "mesh", done, done + 0.5));
+      if (has_sheet_tags(result.mesh))
+        meshing::update_bone_side(result.mesh, surfaces.at(bone).mesh);
+      add_figures(result, std::string(cartilage) + "_", record);
+      io::write_tets(partial / (std::string(cartilage) + ".vtu"), result.mesh);
+      done += 0.5;
+    }
+  };
+  return run_stage(folder, wanted, reuse, monitor, body);
+}
+
+}  // namespace coxa::pipeline

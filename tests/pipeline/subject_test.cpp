@@ -1,0 +1,74 @@
+#include <coxa/pipeline/subject.h>
+
+#include <coxa/core/error.h>
+#include <coxa/io/files.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace coxa::pipeline {
+namespace fs = std::filesystem;
+
+class SubjectFile : public ::testing::Test {
+ protected:
+  SubjectFile()
+      : folder_(fs::temp_directory_path() / ("coxa_subject_" + std::to_string(getpid()))) {
+    io::write_bytes(folder_ / "t1.nii.gz", "image");
+    io::write_bytes(folder_ / "places.mrk.json", "landmarks");
+  }
+  ~SubjectFile() override { fs::remove_all(folder_); }
+
+  Subject read(const std::string& text) {
+    io::write_bytes(folder_ / "subject.toml", text);
+    return read_subject(folder_ / "subject.toml");
+  }
+  std::string error_of(const std::string& text) {
+    try {
+      read(text);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_input);
+      return error.what();
+    }
+    return "no error";
+  }
+  const std::string good_ =
+      "side = \"left\"\n[image]\npath = \"t1.nii.gz\"\n[landmarks]\npath = \"places.mrk.json\"\n"
+      "[motion]\npattern = \"flexion\"\n";
+  fs::path folder_;
+};
+
+TEST_F(SubjectFile, GivesItsValuesAndDefaults) {
+  const Subject s = read(good_ + "frames = 7\n[joint]\nforce_N = 800\n");
+  EXPECT_EQ(s.side, Side::left);
+  EXPECT_EQ(s.name, "subject");
+  EXPECT_EQ(s.images.at(0).path, folder_ / "t1.nii.gz");
+  EXPECT_EQ(s.motion.frames, 7);
+  EXPECT_DOUBLE_EQ(s.joint.force, 800.0);
+  EXPECT_DOUBLE_EQ(s.joint.poisson_ratio, 0.42);
+  EXPECT_EQ(s.joint.loading, Loading::joint_force);
+}
+TEST_F(SubjectFile, NamesTheNearestKeyOfAMisspeltOne) {
+  EXPECT_NE(error_of(good_ + "[joint]\nforce_n = 800\n").find("did you mean force_N?"),
+            std::string::npos);
+}
+TEST_F(SubjectFile, NamesAFileThatIsNotThere) {
+  const std::string text =
+      error_of("side = \"left\"\n[image]\npath = \"t2.nii.gz\"\n[motion]\npattern = \"flexion\"\n");
+  EXPECT_NE(text.find("there is no"), std::string::npos);
+  EXPECT_NE(text.find("t2.nii.gz"), std::string::npos);
+}
+TEST_F(SubjectFile, WantsEitherAPatternOrMarkers) {
+  EXPECT_NE(error_of(good_ + "markers = \"t1.nii.gz\"\n").find("either a pattern or markers"),
+            std::string::npos);
+}
+TEST_F(SubjectFile, RefusesValuesOutOfRange) {
+  EXPECT_NE(error_of(good_ + "[joint]\npoisson = 0.5\n").find("must be in (0, 0.5), got 0.5"),
+            std::string::npos);
+  EXPECT_NE(error_of(good_ + "[mesh]\nlayers = 9\n").find("must be 1 to 8, got 9"),
+            std::string::npos);
+  EXPECT_NE(error_of(good_ + "frames = 1\n").find("must be 2 to 2000, got 1"), std::string::npos);
+}
+TEST_F(SubjectFile, WantsASide) {
+  EXPECT_NE(error_of("side = \"port\"\n").find("must be \"left\" or \"right\""), std::string::npos);
+}
+
+}  // namespace coxa::pipeline
