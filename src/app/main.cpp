@@ -18,7 +18,18 @@ void add_common_flags(CLI::App& verb, CommonOptions& common) {
   verb.add_flag("-v", common.verbose, "more about what is done");
 }
 
-void add_verbs(CLI::App& app, Context& context) { add_atlas(app, context); }
+void add_verbs(CLI::App& app, Context& context) {
+  add_run(app, context);
+  add_segment(app, context);
+  add_mesh(app, context);
+  add_track(app, context);
+  add_simulate(app, context);
+  add_report(app, context);
+  add_compare(app, context);
+  add_phantom(app, context);
+  add_atlas(app, context);
+  add_check(app, context);
+}
 
 int usage_error(const CLI::App& app, const CLI::ParseError& error, Context& context) {
   if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version

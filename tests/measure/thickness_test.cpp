@@ -42,4 +42,17 @@ TEST(CartilageThickness, RejectsAnEmptyMesh) {
   EXPECT_THROW(cartilage_thickness(bone, TriMesh{}), Error);
 }
 
+TEST(ClosedCartilageThickness, IsTheFarSideOfABoxLyingALittleOffTheBone) {
+  const TriMesh layer = test::box(Vec3(-20, -20, 0.2), Vec3(20, 20, 1.7));
+  EXPECT_LE((closed_cartilage_thickness(bone, layer).array() - 1.7).abs().maxCoeff(), 1e-9);
+}
+TEST(ClosedCartilageThickness, IsTheFarSideOfABoxThatReachesIntoTheBone) {
+  const TriMesh layer = test::box(Vec3(-20, -20, -0.2), Vec3(20, 20, 1.7));
+  EXPECT_LE((closed_cartilage_thickness(bone, layer).array() - 1.7).abs().maxCoeff(), 1e-9);
+}
+TEST(ClosedCartilageThickness, IsNaNBesideTheCartilage) {
+  const TriMesh layer = test::box(Vec3(100, 100, 0.2), Vec3(120, 120, 1.7));
+  EXPECT_TRUE(closed_cartilage_thickness(bone, layer).array().isNaN().all());
+}
+
 }  // namespace coxa::measure

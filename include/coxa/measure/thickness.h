@@ -24,4 +24,13 @@ struct ThicknessOptions {
 Eigen::VectorXd cartilage_thickness(const TriMesh& bone, const TriMesh& articular,
                                     const ThicknessOptions& options = {});
 
+/// Thickness of a closed cartilage over its bone, at every bone vertex.
+///
+/// The same rays against the whole closed surface: the first triangle met within `max_thickness` of
+/// the bone whose normal looks along the ray, so that a bone side lying a little off the bone does
+/// not count as the articular one.
+/// @returns V values, mm from the bone; NaN where no cartilage covers the bone
+Eigen::VectorXd closed_cartilage_thickness(const TriMesh& bone, const TriMesh& cartilage,
+                                           const ThicknessOptions& options = {});
+
 }  // namespace coxa::measure
