@@ -12,7 +12,7 @@ namespace coxa::io {
 namespace {
 
 constexpr std::string_view kMagic = "coxa-atlas";
-constexpr std::int32_t kFormat = 1;
+constexpr std::int32_t kFormat = 2;
 constexpr double kLargestCode = 32767.0;
 // no part of an atlas has more entries; a larger count means a broken file
 constexpr std::int64_t kMostEntries = std::int64_t{1} << 28;
@@ -179,6 +179,13 @@ void write_structure(Writer& out, const shape::StructureModel& model) {
   for (const shape::ProfileSet& set : model.profiles) write_profiles(out, set);
   out.matrix<float>(as_matrix(model.reference));
   out.value(static_cast<std::uint8_t>(model.generic));
+  out.value(model.n_bone_side);
+  out.value(static_cast<std::int64_t>(model.landmark_vertices.size()));
+  for (const auto& [name, vertex] : model.landmark_vertices) {
+    out.text(name);
+    out.value(vertex);
+  }
+  out.value(model.leave_one_out_error);
 }
 
 shape::StructureModel read_structure(Reader& in) {
@@ -200,6 +207,12 @@ shape::StructureModel read_structure(Reader& in) {
   for (std::int64_t i = 0; i < n_sets; ++i) model.profiles.push_back(read_profiles(in));
   model.reference = as_parameters(in.matrix<float, MatX>());
   model.generic = in.value<std::uint8_t>() != 0;
+  model.n_bone_side = in.value<Index>();
+  for (auto n = in.count(); n > 0; --n) {
+    const std::string name = in.text();
+    model.landmark_vertices[name] = in.value<Index>();
+  }
+  model.leave_one_out_error = in.value<double>();
   return model;
 }
 

@@ -20,6 +20,9 @@ constexpr double kCapHeight = 2.5;
 // a femur that reaches less far below its head than this ends in a cut, not in a knee, mm
 constexpr double kWholeFemur = 300.0;
 
+// the thickness of this set's cartilages differs oddly between the sides of a body
+constexpr const char* kOddCartilages = "visible_human";
+
 /// A hip as it lies in its scan.
 struct ScannedHip {
   std::string set, subject;  ///< "libhip", "m2"
@@ -47,7 +50,8 @@ ScannedHip read_hip(const std::string& set, const std::string& subject, const fs
   ScannedHip hip{set, subject, side, {}, {}, {}};
   for (const char* structure : kStructures) {
     const fs::path path = folder / (std::string(structure) + ".ply");
-    if (!fs::exists(path)) continue;
+    const bool cartilage = std::string(structure).find("_cartilage") != std::string::npos;
+    if (!fs::exists(path) || (cartilage && set == kOddCartilages)) continue;
     hip.surfaces[structure].mesh = io::read_surface(path);
     if (const auto n = io::read_bone_side_faces(path)) hip.bone_side_faces[structure] = *n;
   }

@@ -1,19 +1,17 @@
 #include <coxa/shape/build_atlas.h>
 
 #include <coxa/core/error.h>
+#include <coxa/geom/fits.h>
 #include <coxa/mesh/hierarchy.h>
-#include <coxa/mesh/remesh.h>
 #include <coxa/shape/shape_modes.h>
+
+#include <cmath>
+
+#include "cartilage_place.h"
+#include "correspondence.h"
 
 namespace coxa::shape {
 namespace {
-
-/// The examples of one structure, in correspondence.
-struct Corresponding {
-  Triangles triangles;
-  std::vector<Points> vertices;             ///< per example, hip frame
-  std::vector<const HipExample*> examples;  ///< likewise
-};
 
 Points centroids(const Points& vertices, const Triangles& triangles) {
   Points points(triangles.rows(), 3);
@@ -25,67 +23,11 @@ Points centroids(const Points& vertices, const Triangles& triangles) {
   return points;
 }
 
-/// Trust of the remeshed template: that of the nearest vertex before.
-VecX carried_trust(const TrustedSurface& from, const TriMesh& to) {
-  if (from.trust.size() == 0) return {};
-  VecX trust(to.n_vertices());
-  for (Index v = 0; v < to.n_vertices(); ++v) {
-    Index nearest = 0;
-    (from.mesh.points.rowwise() - to.points.row(v)).rowwise().squaredNorm().minCoeff(&nearest);
-    trust[v] = from.trust[nearest];
-  }
-  return trust;
-}
-
-Corresponding correspond(const std::string& name, const std::vector<HipExample>& examples,
-                         const StructureOptions& structure, const RegistrationOptions& options,
-                         const Monitor& monitor) {
-  Corresponding all;
-  for (const HipExample& example : examples) {
-    if (example.surfaces.count(name)) all.examples.push_back(&example);
-  }
-  require(!all.examples.empty(), "no example has the structure ", name);
-  const TrustedSurface& first = all.examples.front()->surfaces.at(name);
-  TrustedSurface model;
-  model.mesh = remesh(first.mesh, {.target_edge = structure.edge});
-  model.trust = carried_trust(first, model.mesh);
-  all.triangles = model.mesh.triangles;
-
-  // first against the template, then against the mean
-  const double n_fits = 2.0 * static_cast<double>(all.examples.size());
-  for (int pass = 0; pass < 2; ++pass) {
-    all.vertices.clear();
-    for (std::size_t i = 0; i < all.examples.size(); ++i) {
-      all.vertices.push_back(
-          register_surface(model, all.examples[i]->surfaces.at(name), options, monitor));
-      monitor.progress("atlas " + name,
-                       (pass * n_fits / 2.0 + static_cast<double>(i) + 1.0) / n_fits);
-    }
-    model.mesh.points = align_shapes(all.vertices).mean;
-  }
-  return all;
-}
-
-SimplexMesh posed(const SimplexMesh& topology, Points points) {
-  SimplexMesh mesh = topology;
-  mesh.points = std::move(points);
-  return mesh;
-}
-
-std::vector<ProfileSet> profiles_of(const Corresponding& all, const SimplexMesh& finest,
-                                    const ProfileOptions& options) {
-  std::map<std::string, std::vector<ProfileExample>> by_contrast;
-  for (std::size_t i = 0; i < all.examples.size(); ++i) {
-    const Points points = centroids(all.vertices[i], all.triangles);
-    const Points normals = simplex_normals(posed(finest, points));
-    for (const ExampleImage& image : all.examples[i]->images) {
-      by_contrast[image.contrast].push_back({&image.volume, points, normals});
-    }
-  }
-  std::vector<ProfileSet> sets;
-  for (const auto& [contrast, list] : by_contrast)
-    sets.push_back(learn_profiles(list, contrast, options));
-  return sets;
+/// Share of the examples that show each vertex: what few show hardly counts for pose and size.
+VecX share_observed(const Correspondence& all) {
+  VecX share = VecX::Zero(all.observed.front().size());
+  for (const VecX& observed : all.observed) share += observed;
+  return share / static_cast<double>(all.observed.size());
 }
 
 std::vector<SimplexParameters> reference_parameters(const SimplexMesh& mesh) {
@@ -99,35 +41,103 @@ std::vector<SimplexParameters> reference_parameters(const SimplexMesh& mesh) {
   return parameters;
 }
 
-StructureModel make_model(const std::string& name, const Corresponding& all,
-                          const StructureOptions& structure, const AtlasOptions& options) {
-  const AlignedShapes aligned = align_shapes(all.vertices);
+double root_mean_square(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return values.empty() ? kNaN : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+/// @param mean where the mean shape lies in the atlas frame; the modes are turned along with it
+StructureModel make_model(const std::string& name, const Correspondence& all,
+                          const AlignedShapes& aligned, const Points& mean,
+                          const AtlasOptions& options) {
   StructureModel model;
   model.name = name;
-  model.hierarchy = make_hierarchy({aligned.mean, all.triangles}, {.n_levels = structure.n_levels});
+  model.n_bone_side = all.n_bone_side;
+  const int n_levels = options.structures.at(name).n_levels;
+  model.hierarchy = make_hierarchy({mean, all.triangles}, {.n_levels = n_levels});
+  const Similarity to_atlas = fit_similarity(aligned.mean, mean);
   AlignedShapes simplex;
-  for (const Points& shape : aligned.shapes)
-    simplex.shapes.push_back(centroids(shape, all.triangles));
-  simplex.mean = centroids(aligned.mean, all.triangles);
+  for (const Points& shape : aligned.shapes) {
+    simplex.shapes.push_back(
+        centroids(transformed(to_atlas.scale * shape, to_atlas.X), all.triangles));
+  }
+  simplex.mean = centroids(transformed(to_atlas.scale * aligned.mean, to_atlas.X), all.triangles);
   model.shape = principal_modes(simplex, options.variance_share);
-  const SimplexMesh& finest = model.hierarchy.levels.back();
-  model.profiles = profiles_of(all, finest, options.profiles);
-  model.reference = reference_parameters(finest);
+  model.leave_one_out_error = root_mean_square(leave_one_out_errors(simplex));
+  model.reference = reference_parameters(model.hierarchy.levels.back());
   return model;
+}
+
+bool is_cartilage(const std::string& name) { return name.find("_cartilage") != std::string::npos; }
+
+void check(const AtlasOptions& options) {
+  require(options.cartilage_gap >= 0.0, "cartilage_gap must not be negative, got ",
+          options.cartilage_gap);
+  for (const auto& [name, structure] : options.structures) {
+    require(structure.edge > 0.0, name, ": edge must be positive, got ", structure.edge);
+    require(structure.n_levels >= 3, name, ": at least three levels, got ", structure.n_levels);
+    require(!is_cartilage(name) || options.structures.count(bone_under(name)), name,
+            " needs its bone among the structures");
+  }
+}
+
+/// The bones of the atlas while it is built.
+struct BuiltBone {
+  Correspondence correspondence;
+  TriMesh mean;
+};
+
+/// Finest vertices of the models nearest to the landmarks that lie on them.
+void update_landmark_vertices(Atlas& atlas) {
+  constexpr double kOnSurface = 3.0;  // mm
+  for (StructureModel& model : atlas.structures) {
+    if (model.n_bone_side > 0) continue;
+    const Points& points = model.hierarchy.levels.back().points;
+    for (const auto& [name, place] : atlas.landmarks) {
+      Index nearest = 0;
+      const double squared =
+          (points.rowwise() - place.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+      if (squared < kOnSurface * kOnSurface) model.landmark_vertices[name] = nearest;
+    }
+  }
 }
 
 }  // namespace
 
+std::string bone_under(const std::string& cartilage) {
+  return cartilage == "femoral_cartilage" ? "femur" : "hip_bone";
+}
+
 Atlas build_atlas(const std::vector<HipExample>& examples, const AtlasOptions& options,
                   const Monitor& monitor) {
+  check(options);
   Atlas atlas;
+  std::map<std::string, BuiltBone> bones;
   std::map<std::string, TriMesh> means;
   for (const auto& [name, structure] : options.structures) {
-    const Corresponding all = correspond(name, examples, structure, options.registration, monitor);
-    atlas.structures.push_back(make_model(name, all, structure, options));
-    means[name] = {align_shapes(all.vertices).mean, all.triangles};
+    if (is_cartilage(name)) continue;
+    BuiltBone bone;
+    bone.correspondence = correspond_bone(name, examples, structure, options.registration, monitor);
+    const Correspondence& all = bone.correspondence;
+    const AlignedShapes aligned = align_shapes(all.vertices, share_observed(all));
+    bone.mean = means[name] = {aligned.mean, all.triangles};
+    atlas.structures.push_back(make_model(name, all, aligned, aligned.mean, options));
+    bones[name] = std::move(bone);
+  }
+  for (const auto& [name, structure] : options.structures) {
+    if (!is_cartilage(name)) continue;
+    const Correspondence all = correspond_cartilage(name, bone_under(name), examples, structure,
+                                                    options.registration, monitor);
+    const AlignedShapes aligned = align_shapes(all.vertices);
+    const BuiltBone& bone = bones.at(bone_under(name));
+    const Points mean =
+        placed_on_bone(aligned.mean, all, bone.mean, bone.correspondence, options.cartilage_gap);
+    means[name] = {mean, all.triangles};
+    atlas.structures.push_back(make_model(name, all, aligned, mean, options));
   }
   atlas.landmarks = find_landmarks(means);
+  update_landmark_vertices(atlas);
   for (const HipExample& example : examples) atlas.subjects.push_back(example.name);
   return atlas;
 }

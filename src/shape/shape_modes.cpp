@@ -26,7 +26,7 @@ Points mean_of(const std::vector<Points>& shapes) {
 
 }  // namespace
 
-AlignedShapes align_shapes(const std::vector<Points>& shapes) {
+AlignedShapes align_shapes(const std::vector<Points>& shapes, const VecX& weights) {
   require(!shapes.empty(), "a shape model needs at least one example");
   for (const Points& shape : shapes) {
     require(shape.rows() == shapes.front().rows(),
@@ -36,13 +36,13 @@ AlignedShapes align_shapes(const std::vector<Points>& shapes) {
   // the plain mean fixes the average pose and size, each round's mean is put back there
   const Points average = mean_of(shapes);
   AlignedShapes aligned{shapes, shapes.front()};
-  aligned.mean = mapped(aligned.mean, fit_similarity(aligned.mean, average));
+  aligned.mean = mapped(aligned.mean, fit_similarity(aligned.mean, average, weights));
   for (int round = 0; round < kProcrustesRounds; ++round) {
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      aligned.shapes[i] = mapped(shapes[i], fit_similarity(shapes[i], aligned.mean));
+      aligned.shapes[i] = mapped(shapes[i], fit_similarity(shapes[i], aligned.mean, weights));
     }
     const Points mean = mean_of(aligned.shapes);
-    aligned.mean = mapped(mean, fit_similarity(mean, average));
+    aligned.mean = mapped(mean, fit_similarity(mean, average, weights));
   }
   return aligned;
 }
@@ -70,6 +70,25 @@ ShapeModes principal_modes(const AlignedShapes& aligned, double variance_share) 
     modes.modes.col(m) = mode * ((mode[largest] > 0.0 ? 1.0 : -1.0) / mode.norm());  // a fixed sign
   }
   return modes;
+}
+
+std::vector<double> leave_one_out_errors(const AlignedShapes& aligned) {
+  std::vector<double> errors;
+  const std::size_t n = aligned.shapes.size();
+  if (n < 3) return errors;
+  for (std::size_t left = 0; left < n; ++left) {
+    AlignedShapes rest;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i != left) rest.shapes.push_back(aligned.shapes[i]);
+    }
+    rest.mean = mean_of(rest.shapes);
+    const Points& shape = aligned.shapes[left];
+    const VecX off = flat(mapped(shape, fit_similarity(shape, rest.mean))) - flat(rest.mean);
+    const MatX modes = principal_modes(rest, 1.0).modes;
+    const VecX missed = off - modes * (modes.transpose() * off);
+    errors.push_back(missed.norm() / std::sqrt(static_cast<double>(shape.rows())));
+  }
+  return errors;
 }
 
 Points shape_from(const Points& mean, const ShapeModes& modes, const VecX& coefficients) {

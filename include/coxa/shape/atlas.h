@@ -18,7 +18,7 @@ struct ProfileSet {
   VecX reliability;      ///< V in [0, 1]: agreement of the training profiles
 };
 
-/// Point-distribution model over the finest level's vertices of all structures that move together.
+/// Point-distribution model over the finest level's vertices of one structure.
 struct ShapeModes {
   MatX modes;       ///< 3V×k orthonormal columns, rows grouped per vertex (x, y, z)
   VecX deviations;  ///< k standard deviations, mm (of the coordinate along the mode)
@@ -29,10 +29,18 @@ struct ShapeModes {
 struct StructureModel {
   std::string name;            ///< femur, hip_bone, femoral_cartilage, acetabular_cartilage, …
   SimplexHierarchy hierarchy;  ///< mean shape, at least three resolutions, coarse first
-  ShapeModes shape;            ///< of the finest level, after similarity alignment of the hip
+  ShapeModes shape;            ///< of the finest level, after similarity alignment of the structure
   std::vector<ProfileSet> profiles;
   std::vector<SimplexParameters> reference;  ///< shape memory of the finest level
   bool generic = false;                      ///< built from anatomy, not from examples
+  /// Of a cartilage: n, so that finest vertices 0 … n-1 lie on the bone and vertex i + n is on the
+  /// articular side opposite vertex i; 0 for other structures.
+  Index n_bone_side = 0;
+  /// Finest vertex nearest to each landmark that lies on this surface: carries it to any shape.
+  std::map<std::string, Index> landmark_vertices;
+  /// mm, root mean square over the examples: what the modes of the other examples cannot describe
+  /// of an example left out; NaN for fewer than three examples.
+  double leave_one_out_error = 0.0;
 };
 
 /// Mean landmark positions in the atlas frame, by name without side suffix.

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <coxa/image/volume.h>
+#include <coxa/mesh/tri_mesh.h>
 #include <coxa/shape/atlas.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,5 +31,16 @@ struct ProfileExample {
 /// @throws Error bad_input if the examples differ in their number of vertices
 ProfileSet learn_profiles(const std::vector<ProfileExample>& examples, const std::string& contrast,
                           const ProfileOptions& options = {});
+
+/// A hip whose surfaces and image are both known.
+struct ImagedHip {
+  std::string contrast;  ///< class of profiles: "t1", "dess", "t1_fluid", …
+  const std::map<std::string, TriMesh>* surfaces = nullptr;  ///< triangle i is finest vertex i
+  const Volume* image = nullptr;  ///< in the same frame; both must outlive the call
+};
+
+/// Gives every structure of the atlas one profile set per class of images, in order of the names.
+void update_profiles(Atlas& atlas, const std::vector<ImagedHip>& hips,
+                     const ProfileOptions& options = {});
 
 }  // namespace coxa::shape
