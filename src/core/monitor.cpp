@@ -22,7 +22,9 @@ Monitor part_of(const Monitor& parent, std::string stage, double from, double to
   Monitor part = parent;
   if (parent.on_progress) {
     part.on_progress = [report = parent.on_progress, stage = std::move(stage), from, to](
-                           std::string_view, double share) { report(stage, from + (to - from) * share); };
+                           std::string_view, double share) {
+      report(stage, from + (to - from) * share);
+    };
   }
   return part;
 }

@@ -31,14 +31,17 @@ int thread_count() { return requested_threads(); }
 
 namespace detail {
 
-std::int64_t chunk_size(std::int64_t n) { return std::max<std::int64_t>(1, (n + kChunks - 1) / kChunks); }
+std::int64_t chunk_size(std::int64_t n) {
+  return std::max<std::int64_t>(1, (n + kChunks - 1) / kChunks);
+}
 
 void run_chunks(std::int64_t n_chunks, const std::function<void(std::int64_t)>& body) {
   if (n_chunks <= 1 || thread_count() == 1) {
     for (std::int64_t chunk = 0; chunk < n_chunks; ++chunk) body(chunk);
     return;
   }
-  // more threads than cores are allowed on request, so that tests can witness independence of the count
+  // more threads than cores are allowed on request, so that tests can witness independence of the
+  // count
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(thread_count()));
   oneapi::tbb::task_arena arena(thread_count());

@@ -9,13 +9,15 @@
 namespace coxa {
 
 double harmonic_sum() {
-  return parallel_reduce(100001, 0.0, [](Index i) { return 1.0 / (1.0 + i); },
-                         [](double a, double b) { return a + b; });
+  return parallel_reduce(
+      100001, 0.0, [](Index i) { return 1.0 / (1.0 + i); },
+      [](double a, double b) { return a + b; });
 }
 
 TEST(ParallelFor, VisitsEveryIndexOnce) {
   std::vector<int> visits(10007, 0);
-  with_threads(8, [&] { parallel_for(10007, [&](Index i) { ++visits[static_cast<std::size_t>(i)]; }); });
+  with_threads(
+      8, [&] { parallel_for(10007, [&](Index i) { ++visits[static_cast<std::size_t>(i)]; }); });
   for (int count : visits) ASSERT_EQ(count, 1);
 }
 TEST(ParallelFor, DoesNothingForNoIterations) {

@@ -7,7 +7,8 @@
 
 namespace coxa {
 
-/// Why an operation on somebody's data or request failed; `exit_code` maps it to the process's exit code.
+/// Why an operation on somebody's data or request failed; `exit_code` maps it to the process's exit
+/// code.
 enum class ErrorCode {
   usage,           ///< the request itself is wrong (options, command line)
   bad_input,       ///< the data or an option value cannot be used
@@ -24,7 +25,8 @@ int exit_code(ErrorCode code);
 /// The code's name as written in JSON output, for example "bad_input".
 std::string_view name(ErrorCode code);
 
-/// Failure caused by data or request; the text says what, where, the value, the limit and what to do.
+/// Failure caused by data or request; the text says what, where, the value, the limit and what to
+/// do.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& text) : std::runtime_error(text), code_(code) {}

@@ -7,7 +7,8 @@
 
 namespace coxa {
 
-/// Where long work reports to and learns of Ctrl-C. A default-constructed Monitor ignores everything.
+/// Where long work reports to and learns of Ctrl-C. A default-constructed Monitor ignores
+/// everything.
 ///
 /// @note passed by const&; refers to the cancel flag, which must outlive it.
 struct Monitor {
@@ -22,7 +23,8 @@ struct Monitor {
   void check_cancelled() const;
 };
 
-/// A monitor whose shares [0, 1] fill [from, to] of `parent`; the stage name is the parent's choice `stage`.
+/// A monitor whose shares [0, 1] fill [from, to] of `parent`; the stage name is the parent's choice
+/// `stage`.
 Monitor part_of(const Monitor& parent, std::string stage, double from, double to);
 
 }  // namespace coxa

@@ -45,7 +45,8 @@ T parallel_reduce(std::int64_t n, const T& identity, const Map& map, const Combi
   detail::run_chunks(static_cast<std::int64_t>(partial.size()), [&](std::int64_t chunk) {
     T sum = identity;
     const std::int64_t end = std::min(n, (chunk + 1) * size);
-    for (std::int64_t i = chunk * size; i < end; ++i) sum = combine(std::move(sum), map(static_cast<Index>(i)));
+    for (std::int64_t i = chunk * size; i < end; ++i)
+      sum = combine(std::move(sum), map(static_cast<Index>(i)));
     partial[static_cast<std::size_t>(chunk)] = std::move(sum);
   });
   T total = identity;

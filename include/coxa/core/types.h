@@ -15,9 +15,10 @@ using Mat3 = Eigen::Matrix3d;
 using VecX = Eigen::VectorXd;
 using MatX = Eigen::MatrixXd;
 
-using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;    ///< n×3, mm
-using Triangles = Eigen::Matrix<Index, Eigen::Dynamic, 3, Eigen::RowMajor>;  ///< m×3, counter-clockwise from outside
-using Tets = Eigen::Matrix<Index, Eigen::Dynamic, 4, Eigen::RowMajor>;       ///< m×4, positive volume
+using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;  ///< n×3, mm
+using Triangles = Eigen::Matrix<Index, Eigen::Dynamic, 3,
+                                Eigen::RowMajor>;  ///< m×3, counter-clockwise from outside
+using Tets = Eigen::Matrix<Index, Eigen::Dynamic, 4, Eigen::RowMajor>;  ///< m×4, positive volume
 
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();

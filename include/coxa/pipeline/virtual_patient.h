@@ -9,7 +9,8 @@
 
 namespace coxa::pipeline {
 
-/// Other voxels, noise, shading, texture and fat shift than those of the images that profiles were learned on.
+/// Other voxels, noise, shading, texture and fat shift than those of the images that profiles were
+/// learned on.
 PhantomOptions unlike_training();
 
 struct VirtualPatientRequest {
