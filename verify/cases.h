@@ -27,5 +27,6 @@ Rows prony();                 // m
 Rows energy();                // n
 Rows curves();                // p
 Rows viscosity();             // q
+Rows strong_compression();    // r
 
 }  // namespace coxa::verify

@@ -5,6 +5,7 @@
 #include <coxa/dynamics/integrators.h>
 #include <coxa/dynamics/system.h>
 #include <coxa/fem/curve_material.h>
+#include <coxa/fem/results.h>
 #include <coxa/fem/viscoelastic_force.h>
 #include <coxa/fem/viscous_force.h>
 
@@ -148,6 +149,26 @@ Rows curves() {
                     cube.holding_force(force)[0], 0.01});
   }
   return rows;
+}
+
+Rows strong_compression() {
+  // between bonded plates, in ten steps to half the height
+  Cube cube;
+  const fem::ElasticForce force(cube.mesh, fem::make_corotational(fem::lame_from(12.0, 0.42)), {},
+                                {.axes = {}, .tangent = fem::Tangent::positive});
+  dynamics::Constraints constraints;
+  for (Index i = 0; i < cube.mesh.n_vertices(); ++i)
+    if (cube.on_face(i, 0, 0.0) || cube.on_face(i, 0, 1.0)) constraints.hold(i);
+  for (int step = 1; step <= 10; ++step) {
+    for (Index i = 0; i < cube.mesh.n_vertices(); ++i)
+      cube.particles.x[3 * i] *= (1.0 - 0.05 * step) / (1.05 - 0.05 * step);
+    const SolveReport report = dynamics::update_relax(cube.particles, {&force}, constraints,
+                                                      {.tolerance = 1e-9, .max_iterations = 300});
+    if (!report.converged) fail(ErrorCode::no_convergence, "compression: ", report.reason);
+  }
+  const VecX ratio = fem::compute_fields(force, cube.particles.x).volume_ratio;
+  return {{"rotated mode, bonded block at half its height: inverted tets", 0.0,
+           static_cast<double>((ratio.array() <= 0.0).count()), 0.0}};
 }
 
 Rows viscosity() {

@@ -33,7 +33,8 @@ const std::vector<Case>& cases() {
       {'m', "relaxation by a Prony series", prony},
       {'n', "energy and frequency of free vibration", energy},
       {'p', "strain-stress curves, unrotated and rotated mode", curves},
-      {'q', "viscosity by rate curves", viscosity}};
+      {'q', "viscosity by rate curves", viscosity},
+      {'r', "strong compression", strong_compression}};
   return all;
 }
 

@@ -56,6 +56,13 @@ TetMesh quadratic_mesh(const Grid& grid) {
   return fem::test::with_mid_nodes(merged(mesh));
 }
 
+TetMesh corners_only(const TetMesh& mesh) {
+  TetMesh linear;
+  linear.tets = mesh.tets;
+  linear.points = mesh.points.topRows(mesh.tets.maxCoeff() + 1);
+  return linear;
+}
+
 fem::ContactFaces faces_where(const TetMesh& mesh,
                               const std::function<bool(const Vec3&)>& on_surface) {
   // each face of a tet: three corners, and the middles of its edges 01, 12, 20 among mid nodes 01

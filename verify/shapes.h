@@ -22,6 +22,9 @@ struct Grid {
 /// Ten-node mesh of the grid.
 TetMesh quadratic_mesh(const Grid& grid);
 
+/// The four-node mesh of the corners of a ten-node mesh, whose corners come first.
+TetMesh corners_only(const TetMesh& mesh);
+
 /// Faces of the mesh, as six nodes each, all of whose nodes satisfy `on_surface`.
 fem::ContactFaces faces_where(const TetMesh& mesh,
                               const std::function<bool(const Vec3&)>& on_surface);
