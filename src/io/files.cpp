@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <sstream>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -70,9 +72,10 @@ std::string read_bytes(const fs::path& path) {
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(ErrorCode::bad_file, "cannot open ", path.string(), ": ", system_reason(errno));
-  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad()) fail(ErrorCode::bad_file, "cannot read ", path.string());
-  return bytes;
+  std::ostringstream bytes;
+  if (file.peek() != std::ifstream::traits_type::eof()) bytes << file.rdbuf();
+  if (file.bad() || bytes.bad()) fail(ErrorCode::bad_file, "cannot read ", path.string());
+  return std::move(bytes).str();
 }
 
 void write_bytes(const fs::path& path, std::string_view bytes) {

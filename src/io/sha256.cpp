@@ -80,8 +80,13 @@ std::string sha256_of_bytes(std::string_view bytes) {
 std::string sha256_of_path(const fs::path& path) {
   if (!fs::is_directory(path)) return sha256_of_bytes(read_bytes(path));
   std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(path)) {
-    if (entry.is_regular_file()) files.push_back(entry.path());
+  try {
+    for (const auto& entry : fs::recursive_directory_iterator(path)) {
+      if (entry.is_regular_file()) files.push_back(entry.path());
+    }
+  } catch (const fs::filesystem_error& error) {
+    fail(ErrorCode::bad_file, "cannot read the folder ", path.string(), ": ",
+         error.code().message());
   }
   std::sort(files.begin(), files.end());
   std::string listing;
