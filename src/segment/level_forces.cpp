@@ -54,7 +54,9 @@ void LevelForces::prepare(const Body& body, const Points& positions, const Point
   image_.prepare(positions + asked, trust, normals, kTangentialImage);
 
   const Points fit = level_points(hierarchy, level_, body.fit.points, body.fit.pose);
-  shape_.prepare(fit, VecX::Constant(n(), weights.shape), normals, 1.0);
+  // where the image is sure the model steps back: few examples do not describe everybody's bone
+  const VecX doubt = 1.0 - values_at_level(hierarchy, level_, confidence).array().min(1.0);
+  shape_.prepare(fit, weights.shape * doubt, normals, 1.0);
   prepare_internal(fit, weights);
   prepare_seat(body, normals, weights, host, seat_gap);
 }
