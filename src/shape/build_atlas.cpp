@@ -4,11 +4,14 @@
 #include <coxa/geom/fits.h>
 #include <coxa/mesh/hierarchy.h>
 #include <coxa/shape/shape_modes.h>
+#include <coxa/shape/virtual_hip.h>
 
 #include <cmath>
 
 #include "cartilage_place.h"
 #include "correspondence.h"
+#include "joint_fit.h"
+#include "unfold.h"
 
 namespace coxa::shape {
 namespace {
@@ -50,12 +53,14 @@ double root_mean_square(const std::vector<double>& values) {
 /// @param mean where the mean shape lies in the atlas frame; the modes are turned along with it
 StructureModel make_model(const std::string& name, const Correspondence& all,
                           const AlignedShapes& aligned, const Points& mean,
-                          const AtlasOptions& options) {
+                          const AtlasOptions& options, const Monitor& monitor) {
   StructureModel model;
   model.name = name;
   model.n_bone_side = all.n_bone_side;
+  TriMesh surface{mean, all.triangles};
+  if (!update_unfolded(surface)) monitor.warn("the mean " + name + " cuts itself");
   const int n_levels = options.structures.at(name).n_levels;
-  model.hierarchy = make_hierarchy({mean, all.triangles}, {.n_levels = n_levels});
+  model.hierarchy = make_hierarchy(surface, {.n_levels = n_levels});
   const Similarity to_atlas = fit_similarity(aligned.mean, mean);
   AlignedShapes simplex;
   for (const Points& shape : aligned.shapes) {
@@ -114,15 +119,14 @@ Atlas build_atlas(const std::vector<HipExample>& examples, const AtlasOptions& o
   check(options);
   Atlas atlas;
   std::map<std::string, BuiltBone> bones;
-  std::map<std::string, TriMesh> means;
   for (const auto& [name, structure] : options.structures) {
     if (is_cartilage(name)) continue;
     BuiltBone bone;
     bone.correspondence = correspond_bone(name, examples, structure, options.registration, monitor);
     const Correspondence& all = bone.correspondence;
     const AlignedShapes aligned = align_shapes(all.vertices, share_observed(all));
-    bone.mean = means[name] = {aligned.mean, all.triangles};
-    atlas.structures.push_back(make_model(name, all, aligned, aligned.mean, options));
+    bone.mean = {aligned.mean, all.triangles};
+    atlas.structures.push_back(make_model(name, all, aligned, aligned.mean, options, monitor));
     bones[name] = std::move(bone);
   }
   for (const auto& [name, structure] : options.structures) {
@@ -133,10 +137,10 @@ Atlas build_atlas(const std::vector<HipExample>& examples, const AtlasOptions& o
     const BuiltBone& bone = bones.at(bone_under(name));
     const Points mean =
         placed_on_bone(aligned.mean, all, bone.mean, bone.correspondence, options.cartilage_gap);
-    means[name] = {mean, all.triangles};
-    atlas.structures.push_back(make_model(name, all, aligned, mean, options));
+    atlas.structures.push_back(make_model(name, all, aligned, mean, options, monitor));
   }
-  atlas.landmarks = find_landmarks(means);
+  update_joint_fit(atlas, options.cartilage_gap);
+  atlas.landmarks = find_landmarks(mean_hip(atlas));
   update_landmark_vertices(atlas);
   for (const HipExample& example : examples) atlas.subjects.push_back(example.name);
   return atlas;

@@ -16,6 +16,7 @@ namespace {
 constexpr double kNear = 6.0;
 // the bone side is laid on the bone by displacements that are smooth over this length, mm
 constexpr double kSeatLength = 4.0;
+constexpr double kLastSeatLength = 1.5;
 constexpr int kSeatRounds = 4;
 
 /// Mean place of the cartilage over the examples that have both, in the frame of the mean bone.
@@ -72,7 +73,7 @@ Points placed_on_bone(const Points& cartilage, const Correspondence& corresponde
       const NearestPoint near = tree.nearest(goal.row(v));
       goal.row(v) = near.point.transpose() + gap * normals.row(near.triangle);
     }
-    const double length = round + 1 < kSeatRounds ? kSeatLength : 0.5;
+    const double length = round + 1 < kSeatRounds ? kSeatLength : kLastSeatLength;
     sheet.points = elastic.relaxed(sheet.points, goal, VecX::Ones(goal.rows()), length);
   }
   // the articular side goes with the vertices opposite it

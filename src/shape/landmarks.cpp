@@ -1,8 +1,10 @@
-#include <coxa/core/error.h>
+#include <coxa/geom/fits.h>
 #include <coxa/shape/build_atlas.h>
 
+#include <cmath>
 #include <functional>
 #include <optional>
+#include <vector>
 
 namespace coxa::shape {
 namespace {
@@ -34,11 +36,24 @@ void add(Landmarks& landmarks, const std::string& name, const std::optional<Vec3
   if (place) landmarks[name] = *place;
 }
 
+/// Sphere through the upper medial part of the femur's end.
+Vec3 head_centre(const TriMesh& femur) {
+  std::vector<Vec3> cap;
+  for (Index v = 0; v < femur.n_vertices(); ++v) {
+    const Vec3 p = femur.points.row(v);
+    if (p.norm() < 32.0 && p.dot(Vec3(0.6, -0.2, 0.77)) > 0.0) cap.push_back(p);
+  }
+  if (cap.size() < 4) return Vec3::Zero();
+  Points points(static_cast<Index>(cap.size()), 3);
+  for (Index i = 0; i < points.rows(); ++i) points.row(i) = cap[static_cast<std::size_t>(i)];
+  return fit_sphere(points, {}, {.outlier_scale = 4.7}).centre;
+}
+
 void add_femur(const TriMesh& femur, Landmarks& landmarks) {
   const auto between = [](double low, double high) {
     return [low, high](const Vec3& p) { return low < p.z() && p.z() < high; };
   };
-  landmarks["femoral_head_centre"] = Vec3::Zero();
+  landmarks["femoral_head_centre"] = head_centre(femur);
   // a sphere of 32 to 38 mm about the head's centre cuts the neck and nothing else
   add(landmarks, "femoral_neck_centre",
       centroid(femur, [](const Vec3& p) { return 32.0 < p.norm() && p.norm() < 38.0; }));
@@ -70,9 +85,10 @@ Landmarks find_landmarks(const std::map<std::string, TriMesh>& mean_surfaces) {
   if (const auto it = mean_surfaces.find("hip_bone"); it != mean_surfaces.end())
     add_hip_bone(it->second, landmarks);
   if (const auto it = mean_surfaces.find("acetabular_cartilage"); it != mean_surfaces.end()) {
-    // thirty degrees lateral of straight up: the weight-bearing edge of the socket
+    // where the weight-bearing edge of the socket meets the frontal plane through the head
     add(landmarks, "acetabular_rim_superior",
-        extreme(it->second, Vec3(-0.5, 0.0, 0.866), [](const Vec3&) { return true; }));
+        extreme(it->second, -Vec3::UnitX(),
+                [](const Vec3& p) { return std::abs(p.y()) < 5.0 && p.z() > 0.0; }));
   }
   return landmarks;
 }

@@ -12,7 +12,7 @@ namespace {
 // the last projection moves a vertex no farther than this, mm
 constexpr double kProjectionReach = 2.0;
 // after the last stage every vertex is laid on the target this many times, evened in between
-constexpr int kProjectionRounds = 2;
+constexpr int kProjectionRounds = 3;
 constexpr double kEveningLength = 1.0;  // mm
 
 void check(const TrustedSurface& moving, const TrustedSurface& target,
@@ -51,7 +51,6 @@ void project(TrustedSurface& moving, const PullTarget& target, const ElasticSurf
     Points& points = moving.mesh.points;
     points = elastic.relaxed(points, points + pulls.displacement, pulls.weight, kEveningLength);
   }
-  moving.mesh.points += target.forward_pulls(moving, near).displacement;
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <coxa/geom/fits.h>
 #include <coxa/geom/triangle_tree.h>
 #include <coxa/mesh/simplex_mesh.h>
-#include <coxa/mesh/validate.h>
 #include <coxa/mesh/vertex_normals.h>
 #include <coxa/shape/build_atlas.h>
 #include <coxa/shape/shape_modes.h>
@@ -16,6 +15,7 @@
 
 #include "cartilage_sheet.h"
 #include "random_field.h"
+#include "unfold.h"
 
 namespace coxa::shape {
 namespace {
@@ -188,9 +188,9 @@ VirtualHip surfaces_of(const DrawnHip& hip) {
   return surfaces;
 }
 
-bool cuts_itself(const VirtualHip& hip) {
-  return std::any_of(hip.begin(), hip.end(),
-                     [](const auto& entry) { return !self_intersections(entry.second).empty(); });
+bool update_unfolded(VirtualHip& hip) {
+  return std::all_of(hip.begin(), hip.end(),
+                     [](auto& entry) { return shape::update_unfolded(entry.second); });
 }
 
 void check(const VirtualHipOptions& options) {
@@ -226,7 +226,7 @@ VirtualHip draw_virtual_hip(const Atlas& atlas, Rng& rng, const VirtualHipOption
         mesh.points.row(v) += field(mesh.points.row(v));
       });
     }
-    if (!cuts_itself(surfaces)) return surfaces;
+    if (update_unfolded(surfaces)) return surfaces;
   }
   fail(ErrorCode::no_convergence, "no usable hip in ", kDraws, " draws with a spread of ",
        options.spread, " standard deviations: ask for less");

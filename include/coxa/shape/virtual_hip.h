@@ -25,8 +25,8 @@ using VirtualHip = std::map<std::string, TriMesh>;
 ///
 /// Bones by their modes; cartilages ride on them, their thickness by their own modes; the pelvic
 /// part is then scaled and moved so that the joint fits, and cartilage that would overlap is
-/// thinned. Last, all are deformed together by a smooth random field. Draws whose surfaces cut
-/// themselves are thrown away.
+/// thinned. Last, all are deformed together by a smooth random field. Places where a surface cuts
+/// itself are smoothed; a draw where that does not help is thrown away.
 /// @throws Error bad_input if an option is out of range or the atlas lacks a cartilage's bone;
 ///         no_convergence if no usable hip comes out of many draws (the spread is too large)
 VirtualHip draw_virtual_hip(const Atlas& atlas, Rng& rng, const VirtualHipOptions& options = {});
