@@ -104,20 +104,20 @@ std::vector<JointCentre> estimate_centres(const MarkerData& markers, const Pelvi
   std::vector<JointCentre> centres = {harrington_centre(width, depth, options.side),
                                       bell_centre(width, options.side)};
 
+  // the first frame that shows all thigh markers is the template of the functional methods
   std::vector<RigidTransform> X_PP, X_PF;
   std::vector<Points> in_pelvis(thigh.size(), Points::Constant(markers.n_frames(), 3, kNaN));
-  Points x(static_cast<Eigen::Index>(thigh.size()), 3);
-  for (std::size_t k = 0; k < thigh.size(); ++k)
-    x.row(static_cast<Eigen::Index>(k)) = means.at(thigh[k]);
+  Points x;
   for (Index frame = 0; frame < markers.n_frames(); ++frame) {
     if (!all_seen(markers, pelvis.all(), frame)) continue;
     const RigidTransform X_PL = pelvis_pose(markers, pelvis, frame).inverse();
-    Points y(x.rows(), 3);
+    Points y(static_cast<Eigen::Index>(thigh.size()), 3);
     for (std::size_t k = 0; k < thigh.size(); ++k) {
       y.row(static_cast<Eigen::Index>(k)) = X_PL * at(markers, thigh[k], frame);
       in_pelvis[k].row(frame) = y.row(static_cast<Eigen::Index>(k));
     }
     if (!y.allFinite() || thigh.size() < 3) continue;
+    if (x.rows() == 0) x = y;
     X_PP.push_back({});
     X_PF.push_back(fit_rigid(x, y));
   }
@@ -160,25 +160,71 @@ JointCentre chosen_centre(const std::vector<JointCentre>& centres,
   return *it;
 }
 
-// ISB femur axes in the pelvis from joint centre and knee markers
-Mat3 femur_axes_from_knee(const MarkerRoles& roles, const LabelledPoints& means, const Vec3& centre,
-                          const CalibrationOptions& options, std::vector<std::string>& warnings) {
-  const auto lateral = roles.find(MarkerRole::knee_lateral),
-             medial = roles.find(MarkerRole::knee_medial);
-  require(lateral != roles.end() && means.contains(lateral->second.front()),
-          "no marker on the lateral epicondyle is seen in the neutral frames; give its label as "
-          "'knee_lateral'");
-  const Vec3 outer = means.at(lateral->second.front());
-  if (medial != roles.end() && means.contains(medial->second.front())) {
-    return femur_axes(centre, means.at(medial->second.front()), outer, options.side);
+struct KneeMarkers {
+  std::string lateral;
+  std::optional<std::string> medial;
+};
+
+KneeMarkers knee_markers(const MarkerRoles& roles, const MarkerData& markers) {
+  KneeMarkers knee{only(roles, MarkerRole::knee_lateral, markers), std::nullopt};
+  if (const auto medial = roles.find(MarkerRole::knee_medial); medial != roles.end())
+    knee.medial = medial->second.front();
+  return knee;
+}
+
+// ISB femur axes in the pelvis in one frame; nullopt where a marker is not seen
+std::optional<Mat3> femur_axes_in_pelvis(const MarkerData& markers, const PelvisMarkers& pelvis,
+                                         const KneeMarkers& knee, const Vec3& centre,
+                                         const CalibrationOptions& options, Index frame) {
+  if (!all_seen(markers, pelvis.all(), frame) || !all_seen(markers, {knee.lateral}, frame))
+    return std::nullopt;
+  const RigidTransform X_PL = pelvis_pose(markers, pelvis, frame).inverse();
+  const Vec3 outer = X_PL * at(markers, knee.lateral, frame);
+  if (knee.medial) {
+    if (!all_seen(markers, {*knee.medial}, frame)) return std::nullopt;
+    return femur_axes(centre, X_PL * at(markers, *knee.medial, frame), outer, options.side);
   }
-  warnings.push_back(
-      join_text("no medial knee marker: the knee's axis is taken parallel to the pelvis' "
-                "left-right axis in the neutral frames, ",
-                options.knee_half_width, " mm from the lateral marker to its middle"));
+  // without a medial marker the knee's axis is the pelvis' left-right axis
   const double inwards = options.side == Side::right ? -1.0 : 1.0;
   return femur_axes(centre, outer + Vec3(0, 0, 2.0 * inwards * options.knee_half_width), outer,
                     options.side);
+}
+
+// frames that show the femur's axes; without a medial marker only the one in which thigh and pelvis
+// are straightest
+std::map<Index, Mat3> calibration_frames(const MarkerData& markers, const PelvisMarkers& pelvis,
+                                         const KneeMarkers& knee, const Vec3& centre,
+                                         const CalibrationOptions& options, Index end) {
+  std::map<Index, Mat3> frames;
+  for (Index frame = options.first_frame; frame < end; ++frame) {
+    if (const auto R_PF = femur_axes_in_pelvis(markers, pelvis, knee, centre, options, frame))
+      frames[frame] = *R_PF;
+  }
+  require(!frames.empty(), "no calibration frame shows the pelvis and the knee at once");
+  if (knee.medial) return frames;
+  const auto straightest = std::max_element(
+      frames.begin(), frames.end(),
+      [](const auto& a, const auto& b) { return a.second(1, 1) < b.second(1, 1); });
+  return {*straightest};
+}
+
+// mean positions of the thigh markers in the femur frame, from the joint centre
+LabelledPoints femur_positions(const MarkerData& markers, const PelvisMarkers& pelvis,
+                               const std::map<Index, Mat3>& frames, const Vec3& centre,
+                               const std::vector<std::string>& thigh) {
+  LabelledPoints positions;
+  for (const std::string& label : thigh) {
+    Vec3 sum = Vec3::Zero();
+    double count = 0.0;
+    for (const auto& [frame, R_PF] : frames) {
+      const Vec3 p = at(markers, label, frame);
+      if (!p.allFinite()) continue;
+      sum += R_PF.transpose() * (pelvis_pose(markers, pelvis, frame).inverse() * p - centre);
+      count += 1.0;
+    }
+    if (count > 0) positions[label] = sum / count;
+  }
+  return positions;
 }
 
 }  // namespace
@@ -198,24 +244,28 @@ Calibration calibrate(const MarkerData& markers, const CalibrationOptions& optio
   for (const MarkerRole role : {MarkerRole::knee_lateral, MarkerRole::knee_medial}) {
     if (roles.contains(role)) thigh.push_back(roles.at(role).front());
   }
-  std::vector<std::string> labels = pelvis.all();
-  labels.insert(labels.end(), thigh.begin(), thigh.end());
-  const LabelledPoints means = mean_positions(markers, pelvis, labels, options.first_frame, end);
+  const LabelledPoints means =
+      mean_positions(markers, pelvis, pelvis.all(), options.first_frame, end);
   require(means.contains(pelvis.asis_right),
-          "the pelvis markers are never all seen in the neutral frames");
-  std::erase_if(thigh, [&](const std::string& label) { return !means.contains(label); });
+          "the pelvis markers are never all seen in the calibration frames");
 
   Calibration result;
   result.centres = estimate_centres(markers, pelvis, means, thigh, options, result.warnings);
   const JointCentre centre = chosen_centre(result.centres, options);
-  const Mat3 R_PF = femur_axes_from_knee(roles, means, centre.centre, options, result.warnings);
+  const KneeMarkers knee = knee_markers(roles, markers);
+  const auto frames = calibration_frames(markers, pelvis, knee, centre.centre, options, end);
+  if (!knee.medial) {
+    result.warnings.push_back(
+        join_text("no medial knee marker: in frame ", frames.begin()->first + 1,
+                  " the knee's axis is taken parallel to the pelvis' left-right axis, ",
+                  options.knee_half_width, " mm from the lateral marker to its middle"));
+  }
   HipModel& model = result.model;
   model.side = options.side;
   model.joint_centre_pelvis = centre.centre;
   for (const std::string& label : pelvis.all()) model.pelvis_markers[label] = means.at(label);
-  for (const std::string& label : thigh)
-    model.thigh_markers[label] = R_PF.transpose() * (means.at(label) - centre.centre);
-  model.calibration_frame = options.first_frame;
+  model.thigh_markers = femur_positions(markers, pelvis, frames, centre.centre, thigh);
+  model.calibration_frame = frames.begin()->first;
   model.marker_sd = options.marker_sd;
   model.pelvis_centre_sd = centre.interval / 1.96;
   model.source = join_text("anatomical markers; joint centre: ", centre.definition);

@@ -50,22 +50,6 @@ Expected expectation(const MatX& moments, const SharedArtefact& artefact) {
 
 double geometric_mean(const VecX& values) { return std::exp(values.array().log().mean()); }
 
-// share of the shared shift in a model with equal marker variances, by maximum likelihood
-double shared_share(const ThighObservations& thigh, double floor) {
-  constexpr int kRounds = 30, kInner = 10;
-  const Index K = thigh.n_markers();
-  SharedArtefact artefact{VecX::Constant(K, 50.0), 25.0};
-  for (int round = 0; round < kRounds; ++round) {
-    const MatX moments = residual_moments(thigh, estimate_ball_joint(thigh, artefact.covariance()));
-    for (int inner = 0; inner < kInner; ++inner) {
-      const Expected expected = expectation(moments, artefact);
-      artefact.variance.setConstant(std::max(expected.own.mean(), floor));
-      artefact.shared = std::max(expected.shift, 1e-3 * floor);
-    }
-  }
-  return artefact.shared / artefact.variance[0];
-}
-
 // independent artefact patterns in the trial: participation ratio of the residuals' principal
 // components
 double pattern_count(const ThighObservations& thigh, const PoseEstimate& estimate) {
@@ -92,8 +76,8 @@ double pattern_count(const ThighObservations& thigh, const PoseEstimate& estimat
 PoseEstimate estimate_shared(const ThighObservations& thigh, double floor) {
   // A trial holds a handful of independent artefact patterns, so that a variance estimated from it
   // is worth few degrees of freedom: keep 0.3 of its logarithm's distance from the mean. The shared
-  // part of thigh artefact exceeds that of single markers: twice the variance.
-  constexpr double kOwnShare = 0.3, kSharedRatio = 2.0, kTolerance = 1e-5;
+  // part of thigh artefact exceeds that of single markers: three times the variance.
+  constexpr double kOwnShare = 0.3, kSharedRatio = 3.0, kTolerance = 1e-5;
   constexpr int kMaxIterations = 100;
   const Index K = thigh.n_markers();
   SharedArtefact artefact{VecX::Constant(K, 50.0), kSharedRatio * 50.0};
@@ -116,11 +100,29 @@ PoseEstimate estimate_shared(const ThighObservations& thigh, double floor) {
 
 }  // namespace
 
+// equal marker variances and a shared shift, by maximum likelihood
+SharedShift estimate_shared_shift(const ThighObservations& thigh, double floor_sd) {
+  constexpr int kRounds = 30, kInner = 10;
+  const Index K = thigh.n_markers();
+  const double floor = floor_sd * floor_sd;
+  SharedArtefact artefact{VecX::Constant(K, 50.0), 25.0};
+  for (int round = 0; round < kRounds; ++round) {
+    const MatX moments = residual_moments(thigh, estimate_ball_joint(thigh, artefact.covariance()));
+    if (moments.size() == 0) return {0.0, floor};
+    for (int inner = 0; inner < kInner; ++inner) {
+      const Expected expected = expectation(moments, artefact);
+      artefact.variance.setConstant(std::max(expected.own.mean(), floor));
+      artefact.shared = std::max(expected.shift, 1e-3 * floor);
+    }
+  }
+  return {artefact.shared, artefact.variance[0]};
+}
+
 PoseEstimate estimate_coxa(const ThighObservations& thigh, double floor_sd) {
   // Limits of the choice: below this shared share the pin at the joint centre is not dragged by a
   // common shift, and above this count a trial varies enough to tell steady markers from unsteady
   // ones.
-  constexpr double kSmallShare = 0.25, kEnoughPatterns = 1.5;
+  constexpr double kSmallShare = 0.2, kEnoughPatterns = 1.5;
   const double floor = floor_sd * floor_sd;
   PoseEstimate by_markers = estimate_ball_joint_ml(thigh, floor_sd);
   if (residual_moments(thigh, by_markers).size() == 0) {
@@ -129,8 +131,9 @@ PoseEstimate estimate_coxa(const ThighObservations& thigh, double floor_sd) {
         "artefact";
     return by_markers;
   }
-  const bool separate = pattern_count(thigh, by_markers) > kEnoughPatterns &&
-                        shared_share(thigh, floor) < kSmallShare;
+  const SharedShift shift = estimate_shared_shift(thigh, floor_sd);
+  const bool separate =
+      pattern_count(thigh, by_markers) > kEnoughPatterns && shift.shared < kSmallShare * shift.own;
   return separate ? by_markers : estimate_shared(thigh, floor);
 }
 

@@ -48,6 +48,14 @@ PoseEstimate estimate_ball_joint_ml(const ThighObservations& thigh, double floor
 /// the trial decides.
 PoseEstimate estimate_coxa(const ThighObservations& thigh, double floor_sd);
 
+/// Artefact that all markers share and that each has of its own, per axis, mm².
+struct SharedShift {
+  double shared = 0.0, own = 0.0;
+};
+/// By maximum likelihood over the trial, with equal variances; shared 0 where too few frames are
+/// complete.
+SharedShift estimate_shared_shift(const ThighObservations& thigh, double floor_sd);
+
 /// Residuals R^T y - x of frame f, K×3, mm; NaN rows where a marker was not seen.
 Points residuals_of(const ThighObservations& thigh, Index frame, const Mat3& R_PF,
                     const Vec3& head);

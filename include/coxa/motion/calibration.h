@@ -15,7 +15,7 @@ enum class CentreSource { harrington, bell, score, functional_sphere };
 struct CalibrationOptions {
   Side side = Side::right;
   MarkerMap map;                   ///< empty: default_marker_map(side)
-  Index first_frame = 0;           ///< frames of the neutral pose: [first_frame, end_frame)
+  Index first_frame = 0;           ///< frames that calibrate: [first_frame, end_frame)
   std::optional<Index> end_frame;  ///< to the end of the recording when absent
   CentreSource centre = CentreSource::harrington;
   std::optional<Vec3>
