@@ -1,6 +1,7 @@
 #include <coxa/segment/profile_search.h>
 
 #include <coxa/core/error.h>
+#include <coxa/image/intensity.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,12 +48,12 @@ double intensity_range(const Volume& volume) {
 
 }  // namespace
 
-PreparedImage prepare_image(const Volume& volume, bool) {
+PreparedImage prepare_image(const Volume& volume, bool correct_bias) {
   check(volume);
   PreparedImage image;
-  image.volume = volume;
+  require(intensity_range(volume) > 0.0, "the image is the same brightness everywhere");
+  image.volume = correct_bias ? bias_corrected(volume) : volume;
   image.intensity_range = intensity_range(image.volume);
-  require(image.intensity_range > 0.0, "the image is the same brightness everywhere");
   return image;
 }
 

@@ -48,7 +48,7 @@ std::vector<Resolution> bone_resolutions(double range) {
            .range = 0.6 * range,
            .image_sigma = 1.0,
            .window = 4.0,
-           .affine_k = 0.3,
+           .affine_k = 0.5,
            .level_share = 0.3,
            .score_smoothing = 10,
            .model_noise = 2.0},
@@ -56,7 +56,7 @@ std::vector<Resolution> bone_resolutions(double range) {
            .range = 0.4 * range,
            .image_sigma = 0.7,
            .window = 3.0,
-           .affine_k = 0.7,
+           .affine_k = 0.85,
            .level_share = 0.5,
            .score_smoothing = 8,
            .model_noise = 1.0},
@@ -64,7 +64,7 @@ std::vector<Resolution> bone_resolutions(double range) {
            .range = 0.25 * range,
            .image_sigma = 0.4,
            .window = 3.0,
-           .affine_k = 0.9,
+           .affine_k = 1.0,
            .level_share = 0.7,
            .score_smoothing = 5,
            .model_noise = 0.7},
@@ -144,6 +144,9 @@ Body placed_body(const shape::StructureModel& model, Points placed) {
   body.points = body.fit.points;
   return body;
 }
+
+/// A structure's confidence below which the caller is warned; a good fit has 0.6 to 0.9.
+constexpr double kLowConfidence = 0.4;
 
 /// Everything about one hip, as a right hip.
 class Hip {
@@ -242,15 +245,39 @@ class Hip {
   std::vector<Body> bodies_;
 };
 
+/// From each landmark to the atlas' own, at the pose of the bone that brings it nearest.
+std::map<std::string, double> landmark_distances(const Hip& hip, const shape::Atlas& atlas,
+                                                 const shape::Landmarks& landmarks) {
+  std::map<std::string, double> distances;
+  for (const auto& [name, place] : landmarks) {
+    double nearest = kInfinity;
+    for (std::size_t s = 0; s < hip.bodies().size(); ++s) {
+      if (!hip.is_bone(s)) continue;
+      const Similarity& pose = hip.bodies()[s].fit.pose;
+      const Vec3 own = pose.X * (pose.scale * atlas.landmarks.at(name));
+      nearest = std::min(nearest, (own - place).norm());
+    }
+    distances[name] = nearest;
+  }
+  return distances;
+}
+
 SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& options) {
   SegmentResult result;
-  result.quality = 1.0;
+  double bone_confidence = 0.0, n_bones = 0.0;
   for (std::size_t s = 0; s < hip.bodies().size(); ++s) {
-    if (!hip.is_asked_for(s)) continue;
     const Body& body = hip.bodies()[s];
     const StructureQuality quality = quality_of(body);
     result.structures[body.model->name] = quality;
-    if (hip.is_bone(s)) result.quality = std::min(result.quality, quality.confidence);
+    if (hip.is_bone(s)) {
+      bone_confidence += quality.confidence;
+      n_bones += 1.0;
+    }
+    if (!hip.is_asked_for(s)) continue;
+    if (quality.confidence < kLowConfidence) {
+      result.warnings.push_back(
+          join_text(body.model->name, " was found with low confidence, ", quality.confidence));
+    }
     Surface surface = surface_of(body);
     result.surfaces[body.model->name] = side == Side::left ? mirrored(surface) : surface;
     if (quality.in_view < 0.5) {
@@ -259,6 +286,7 @@ SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& optio
                                           " is in view; the rest is the shape model's"));
     }
   }
+  result.quality = n_bones > 0.0 ? bone_confidence / n_bones : 1.0;
   for (const PreparedImage& image : hip.images()) result.contrasts.push_back(image.contrast);
   if (result.quality < options.minimum_quality) {
     fail(ErrorCode::below_quality, "the hip was not found: quality ", result.quality,
@@ -285,7 +313,9 @@ SegmentResult segment(const std::vector<Volume>& volumes, const shape::Atlas& at
   Hip hip(std::move(images), atlas, options);
   hip.segment_bones(ours, part_of(monitor, "segment bones", 0.0, 0.7));
   hip.segment_layers(part_of(monitor, "segment cartilages", 0.7, 1.0));
-  return make_result(hip, side, options);
+  SegmentResult result = make_result(hip, side, options);
+  result.landmark_distances = landmark_distances(hip, atlas, ours);
+  return result;
 }
 
 }  // namespace coxa::segment

@@ -62,6 +62,7 @@ TEST(SegmentOptions, SearchAndIterationOptionsChangeTheResult) {
   EXPECT_NE(points({.gradient_weight = 0.0}), default_points());
   EXPECT_NE(points({.iterations = 2}), default_points());
   EXPECT_NE(points({.tolerance = 0.5}), default_points());
+  EXPECT_NE(points({.correct_bias = false}), default_points());
 }
 
 TEST(SegmentOptions, ContrastIsTakenAsGiven) {

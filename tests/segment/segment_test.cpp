@@ -75,6 +75,8 @@ TEST(Segment, ConvergesToAKnownEggWithinAFractionOfAVoxel) {
   EXPECT_LE(error_of(result), 0.15);
   EXPECT_EQ(result.contrasts.front(), "t1");
   EXPECT_GT(result.quality, 0.8);
+  EXPECT_EQ(result.landmark_distances.size(), 8u);
+  EXPECT_LT(result.landmark_distances.at("mark_2"), 8.0);
   EXPECT_LT(result.surfaces.at("egg").fields.at("completed").maxCoeff(), 0.5);
 }
 
@@ -147,6 +149,12 @@ TEST(Segment, FollowsARigidMotionOfImageAndLandmarks) {
 TEST(Segment, IsBitIdenticalForOneAndEightThreads) {
   const auto points = [] { return run(image()).surfaces.at("egg").mesh.points; };
   EXPECT_EQ(with_threads(1, points), with_threads(8, points));
+}
+
+TEST(Segment, FindsTheEggWithoutLandmarks) {
+  const SegmentResult result = segment({image()}, atlas(), Side::right, {}, options());
+  EXPECT_LE(error_of(result), 0.15);
+  EXPECT_TRUE(result.landmark_distances.empty());
 }
 
 TEST(Segment, TwoImagesTogetherSeeMoreThanEither) {

@@ -58,7 +58,7 @@ struct SegmentResult {
   std::map<std::string, double>
       landmark_distances;              ///< mm, from each given landmark to the model's own
   std::vector<std::string> contrasts;  ///< per volume, the atlas' contrast its profiles fitted best
-  double quality = 0.0;                ///< [0, 1], the lowest confidence of a bone
+  double quality = 0.0;                ///< [0, 1], the mean confidence of the bones
   std::vector<std::string> warnings;
 };
 
