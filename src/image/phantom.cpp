@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kLargestSample = 0.45;  ///< mm between sub-voxel samples
 constexpr double kTile = 12.0;  ///< mm, side of the tiles for which near muscles are gathered
+constexpr Index kBatch = 16;    ///< slices between two reports of progress
 constexpr double kMuscleLevel = 100.0;  ///< mean signal of muscle in the image
 
 void check(const std::vector<TissueSurface>& surfaces, const PhantomOptions& options) {
@@ -232,8 +233,7 @@ Volume simulate_mri(const std::vector<TissueSurface>& surfaces, const PhantomOpt
   const CoilShading shading(options.bias, SlicePainter::grid_centre(image),
                             0.5 * options.field_of_view.maxCoeff(), options.seed + 101);
   const Index nx = image.size[0], ny = image.size[1];
-  parallel_for(image.size[2], [&](Index k) {
-    monitor.check_cancelled();
+  const auto draw = [&](Index k) {
     const std::vector<Signal> slice = painter.paint(k);
     Rng rng(options.seed * 1000003ULL + 0x9e3779b97f4a7c15ULL * static_cast<std::uint64_t>(k + 1));
     for (Index j = 0; j < ny; ++j) {
@@ -251,7 +251,12 @@ Volume simulate_mri(const std::vector<TissueSurface>& surfaces, const PhantomOpt
             static_cast<float>(std::hypot(real, imaginary));
       }
     }
-  });
+  };
+  for (Index begin = 0; begin < image.size[2]; begin += kBatch) {
+    monitor.check_cancelled();
+    monitor.progress("phantom", static_cast<double>(begin) / image.size[2]);
+    parallel_for(std::min(kBatch, image.size[2] - begin), [&](Index n) { draw(begin + n); });
+  }
   monitor.progress("phantom", 1.0);
   return image;
 }

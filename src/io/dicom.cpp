@@ -23,7 +23,8 @@ constexpr double kLocalizerGap = 2.5;  ///< steps above this multiple of the thi
 
 std::vector<DicomSlice> read_headers(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+  for (const auto& entry :
+       fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied)) {
     if (entry.is_regular_file()) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());

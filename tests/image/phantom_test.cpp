@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -214,6 +216,19 @@ TEST(Phantom, IsBitIdenticalForAnyThreadCountAndDependsOnTheSeed) {
   EXPECT_EQ(one, with_threads(8, run));
   options.seed = 2;
   EXPECT_NE(one, run());
+}
+TEST(Phantom, ReportsProgressAndStopsWhenCancelled) {
+  const std::vector<TissueSurface> ball = {sphere(kCentre, 10.0, Tissue::muscle)};
+  std::vector<double> shares;
+  std::atomic<bool> cancelled = false;
+  Monitor monitor;
+  monitor.on_progress = [&](std::string_view, double share) { shares.push_back(share); };
+  monitor.cancel_flag = &cancelled;
+  simulate_mri(ball, quiet(), monitor);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_EQ(shares.back(), 1.0);
+  cancelled = true;
+  EXPECT_THROW(simulate_mri(ball, quiet(), monitor), Error);
 }
 TEST(Phantom, ShellGrowsDownTheShaft) {
   Points points(3, 3);
