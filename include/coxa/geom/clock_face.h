@@ -33,7 +33,11 @@ inline ClockFace make_clock_face(const Vec3& centre, const Vec3& axis, const Vec
   ClockFace face;
   face.centre = centre;
   face.axis = axis.normalized();
-  face.twelve = (superior - superior.dot(face.axis) * face.axis).normalized();
+  const Vec3 up = superior - superior.dot(face.axis) * face.axis;
+  const Vec3 front = anterior - anterior.dot(face.axis) * face.axis;
+  // a socket that opens straight down or up has no superior side: anterior alone sets the clock
+  const bool upright = up.norm() > 1e-6 * superior.norm();
+  face.twelve = upright ? up.normalized() : front.cross(face.axis).normalized();
   face.three = face.twelve.cross(face.axis);
   if (face.three.dot(anterior) < 0.0) face.three = -face.three;
   return face;
