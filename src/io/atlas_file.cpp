@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "volume_formats.h"
 
@@ -12,8 +13,7 @@ namespace coxa::io {
 namespace {
 
 constexpr std::string_view kMagic = "coxa-atlas";
-constexpr std::int32_t kFormat = 2;
-constexpr double kLargestCode = 32767.0;
+constexpr std::int32_t kFormat = 3;
 // no part of an atlas has more entries; a larger count means a broken file
 constexpr std::int64_t kMostEntries = std::int64_t{1} << 28;
 
@@ -37,15 +37,17 @@ class Writer {
       for (Eigen::Index r = 0; r < m.rows(); ++r) value(static_cast<Stored>(m(r, c)));
     }
   }
-  /// Column by column as 16-bit fractions of the column's largest value.
+  /// Column by column as fractions of the column's largest value, in integers of type Code.
+  template <class Code>
   void fractions(const MatX& m) {
+    constexpr double kLargestCode = std::numeric_limits<Code>::max();
     value(static_cast<std::int64_t>(m.rows()));
     value(static_cast<std::int64_t>(m.cols()));
     for (Eigen::Index c = 0; c < m.cols(); ++c) {
       const double scale = m.rows() > 0 ? m.col(c).cwiseAbs().maxCoeff() / kLargestCode : 0.0;
       value(scale);
       for (Eigen::Index r = 0; r < m.rows(); ++r) {
-        value(static_cast<std::int16_t>(scale > 0.0 ? std::lround(m(r, c) / scale) : 0));
+        value(static_cast<Code>(scale > 0.0 ? std::lround(m(r, c) / scale) : 0));
       }
     }
   }
@@ -89,13 +91,14 @@ class Reader {
     }
     return m;
   }
+  template <class Code>
   MatX fractions() {
     const auto rows = count(), columns = count();
     if (rows * columns > kMostEntries) broken("a matrix is too large");
     MatX m(rows, columns);
     for (Eigen::Index c = 0; c < columns; ++c) {
       const auto scale = value<double>();
-      for (Eigen::Index r = 0; r < rows; ++r) m(r, c) = scale * value<std::int16_t>();
+      for (Eigen::Index r = 0; r < rows; ++r) m(r, c) = scale * value<Code>();
     }
     return m;
   }
@@ -134,7 +137,7 @@ void write_profiles(Writer& out, const shape::ProfileSet& set) {
   out.text(set.contrast);
   out.value(set.step);
   out.value(set.n_inside);
-  out.fractions(set.mean);
+  out.fractions<std::int8_t>(set.mean);
   out.matrix<float>(set.reliability);
 }
 
@@ -143,24 +146,16 @@ shape::ProfileSet read_profiles(Reader& in) {
   set.contrast = in.text();
   set.step = in.value<double>();
   set.n_inside = in.value<Index>();
-  set.mean = in.fractions();
+  set.mean = in.fractions<std::int8_t>();
   set.reliability = in.matrix<float, VecX>();
   return set;
 }
 
-MatX as_matrix(const std::vector<SimplexParameters>& parameters) {
-  MatX m(static_cast<Index>(parameters.size()), 4);
-  for (Index v = 0; v < m.rows(); ++v) {
-    const SimplexParameters& p = parameters[static_cast<std::size_t>(v)];
-    m.row(v) << p.metric.transpose(), p.height;
-  }
-  return m;
-}
-
-std::vector<SimplexParameters> as_parameters(const MatX& m) {
+std::vector<SimplexParameters> reference_of(const SimplexMesh& mesh) {
   std::vector<SimplexParameters> parameters;
-  for (Eigen::Index v = 0; v < m.rows(); ++v) {
-    parameters.push_back({Vec3(m(v, 0), m(v, 1), m(v, 2)), m(v, 3)});
+  for (Index v = 0; v < mesh.n_vertices(); ++v) {
+    const auto corner = [&](int k) { return Vec3(mesh.points.row(mesh.neighbours(v, k))); };
+    parameters.push_back(simplex_parameters(mesh.points.row(v), corner(0), corner(1), corner(2)));
   }
   return parameters;
 }
@@ -173,11 +168,10 @@ void write_structure(Writer& out, const shape::StructureModel& model) {
     out.matrix<std::int32_t>(map.parents);
     out.matrix<float>(map.weights);
   }
-  out.fractions(model.shape.modes);
+  out.fractions<std::int16_t>(model.shape.modes);
   out.matrix<float>(model.shape.deviations);
   out.value(static_cast<std::int64_t>(model.profiles.size()));
   for (const shape::ProfileSet& set : model.profiles) write_profiles(out, set);
-  out.matrix<float>(as_matrix(model.reference));
   out.value(static_cast<std::uint8_t>(model.generic));
   out.value(model.n_bone_side);
   out.value(static_cast<std::int64_t>(model.landmark_vertices.size()));
@@ -199,13 +193,13 @@ shape::StructureModel read_structure(Reader& in) {
     map.weights = in.matrix<float, Points>();
     model.hierarchy.maps.push_back(std::move(map));
   }
-  model.shape.modes = in.fractions();
+  model.shape.modes = in.fractions<std::int16_t>();
   // rounding to 16 bits leaves the columns' length off by parts in a hundred thousand
   for (Eigen::Index c = 0; c < model.shape.modes.cols(); ++c) model.shape.modes.col(c).normalize();
   model.shape.deviations = in.matrix<float, VecX>();
   const auto n_sets = in.count();
   for (std::int64_t i = 0; i < n_sets; ++i) model.profiles.push_back(read_profiles(in));
-  model.reference = as_parameters(in.matrix<float, MatX>());
+  model.reference = reference_of(model.hierarchy.levels.back());
   model.generic = in.value<std::uint8_t>() != 0;
   model.n_bone_side = in.value<Index>();
   for (auto n = in.count(); n > 0; --n) {

@@ -10,8 +10,9 @@ namespace coxa::io {
 /// @throws Error bad_file if it is missing, broken, cut short, or of a newer format
 shape::Atlas read_atlas(const std::filesystem::path& path);
 
-/// Writes a compressed binary file: positions as 32-bit floats (0.01 µm at 100 mm), modes and
-/// profiles as 16-bit fractions of their largest value (1/32767).
+/// Writes a compressed binary file: positions as 32-bit floats (0.01 µm at 100 mm), modes as 16-bit
+/// and profiles as 8-bit fractions of their columns' largest values. The reference parameters are
+/// those of the mean shape and are not stored.
 void write_atlas(const std::filesystem::path& path, const shape::Atlas& atlas);
 
 }  // namespace coxa::io

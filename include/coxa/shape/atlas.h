@@ -31,7 +31,7 @@ struct StructureModel {
   SimplexHierarchy hierarchy;  ///< mean shape, at least three resolutions, coarse first
   ShapeModes shape;            ///< of the finest level, after similarity alignment of the structure
   std::vector<ProfileSet> profiles;
-  std::vector<SimplexParameters> reference;  ///< shape memory of the finest level
+  std::vector<SimplexParameters> reference;  ///< shape memory: of the finest mean
   bool generic = false;                      ///< built from anatomy, not from examples
   /// Of a cartilage: n, so that finest vertices 0 … n-1 lie on the bone and vertex i + n is on the
   /// articular side opposite vertex i; 0 for other structures.
