@@ -1,0 +1,184 @@
+#include <coxa/motion/joint_centre.h>
+
+#include <coxa/core/error.h>
+#include <coxa/core/parallel.h>
+#include <coxa/core/rng.h>
+#include <coxa/geom/fits.h>
+#include <coxa/motion/bone_frames.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace coxa::motion {
+namespace {
+
+// closed surface of revolution about the x axis through `profile` (x, radius), outward
+TriMesh revolved(const std::vector<Vec2>& profile, Index around) {
+  const auto rings = static_cast<Index>(profile.size());
+  TriMesh mesh;
+  mesh.points.resize(rings * around + 2, 3);
+  for (Index r = 0; r < rings; ++r) {
+    for (Index k = 0; k < around; ++k) {
+      const double a = 2 * kPi * k / around;
+      const Vec2& p = profile[static_cast<std::size_t>(r)];
+      mesh.points.row(r * around + k) << p.x(), p.y() * std::cos(a), p.y() * std::sin(a);
+    }
+  }
+  const Index first = rings * around, last = first + 1;
+  mesh.points.row(first) << profile.front().x(), 0, 0;
+  mesh.points.row(last) << profile.back().x(), 0, 0;
+  std::vector<Eigen::RowVector3i> triangles;
+  for (Index k = 0; k < around; ++k) {
+    const Index next = (k + 1) % around;
+    triangles.emplace_back(first, next, k);
+    triangles.emplace_back(last, (rings - 1) * around + k, (rings - 1) * around + next);
+    for (Index r = 0; r + 1 < rings; ++r) {
+      const Index a = r * around + k, b = r * around + next;
+      triangles.emplace_back(a, b, b + around);
+      triangles.emplace_back(a, b + around, a + around);
+    }
+  }
+  mesh.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    mesh.triangles.row(static_cast<Eigen::Index>(t)) = triangles[t];
+  return mesh;
+}
+
+// a head of radius 24 about the origin on a neck that widens to a trochanter, along +x
+TriMesh head_on_neck() {
+  std::vector<Vec2> profile;
+  for (double a = 0.02; a < 2.4; a += 0.04)
+    profile.emplace_back(-24 * std::cos(a), 24 * std::sin(a));
+  for (double x = 20; x < 60; x += 1.5) profile.emplace_back(x, 15.0 + 0.012 * (x - 20) * (x - 20));
+  return revolved(profile, 90);
+}
+
+// a socket: part of a sphere shell from radius 25 to 27 about c, opening along +x
+TriMesh socket_shell(const Vec3& c) {
+  std::vector<Vec2> profile;
+  for (double a = 0.05; a < 1.35; a += 0.04)
+    profile.emplace_back(-27 * std::cos(a), 27 * std::sin(a));
+  for (double a = 1.33; a > 0.03; a -= 0.04)
+    profile.emplace_back(-25 * std::cos(a), 25 * std::sin(a));
+  TriMesh mesh = revolved(profile, 90);
+  mesh.points.rowwise() += c.transpose();
+  return mesh;
+}
+
+TriMesh noisy(TriMesh mesh, double sd, std::uint64_t seed) {
+  Rng rng(seed);
+  for (Index v = 0; v < mesh.n_vertices(); ++v) mesh.points.row(v) += sd * rng.normal3();
+  return mesh;
+}
+
+}  // namespace
+
+TEST(JointCentre, FindsTheHeadOfAFemurWithoutAHint) {
+  SurfaceSet surfaces;
+  surfaces["femur"].mesh = head_on_neck();
+  const auto result = find_joint_centre(surfaces);
+  EXPECT_LE(result.chosen.centre.norm(), 0.05);
+  EXPECT_NEAR(result.chosen.radius, 24.0, 0.05);
+  EXPECT_EQ(result.chosen.definition, "femoral_head");
+  EXPECT_GT(result.chosen.covered_share, 0.4);
+  EXPECT_LT(result.chosen.interval, 0.2);
+}
+TEST(JointCentre, HoldsUnderHalfAMillimetreOfNoise) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    SurfaceSet surfaces;
+    surfaces["femur"].mesh = noisy(head_on_neck(), 0.5, seed);
+    EXPECT_LE(find_joint_centre(surfaces).chosen.centre.norm(), 0.3);
+  }
+}
+TEST(JointCentre, MovesWithTheSurfaces) {
+  const RigidTransform X{rotation_from_vector(Vec3(0.5, -0.8, 1.1)), Vec3(90, -40, -700)};
+  SurfaceSet surfaces;
+  surfaces["femur"].mesh = head_on_neck();
+  surfaces["femur"].mesh.points = transformed(surfaces["femur"].mesh.points, X);
+  EXPECT_LE(
+      (find_joint_centre(surfaces, {.start = X.p + Vec3(4, -3, 2)}).chosen.centre - X.p).norm(),
+      0.05);
+}
+TEST(JointCentre, ReportsEveryDefinitionSideBySide) {
+  SurfaceSet surfaces;
+  surfaces["femur"].mesh = head_on_neck();
+  surfaces["acetabular_cartilage"].mesh = socket_shell(Vec3(1, 0, 0));
+  const auto result = find_joint_centre(surfaces);
+  ASSERT_EQ(result.all.size(), 4u);
+  EXPECT_EQ(result.all[1].definition, "acetabular_cartilage");
+  EXPECT_NEAR(result.all[1].radius, 25.0, 0.1);
+  EXPECT_LE((result.all[1].centre - Vec3(1, 0, 0)).norm(), 0.1);
+  EXPECT_EQ(result.all[2].definition, "acetabulum");
+  EXPECT_NEAR(result.all[2].radius, 27.0, 0.1);
+  EXPECT_EQ(result.all[3].definition, "congruency");
+  EXPECT_NEAR(result.largest_spread, 1.0, 0.3);
+}
+TEST(JointCentre, ByCongruencyIsTheCentreOfARoundHead) {
+  std::vector<Vec2> profile;
+  for (double a = 0.02; a < kPi - 0.01; a += 0.05)
+    profile.emplace_back(-24 * std::cos(a), 24 * std::sin(a));
+  const TriMesh head = revolved(profile, 90);
+  std::vector<Vec2> cup;
+  for (double a = 0.05; a < 1.4; a += 0.05) cup.emplace_back(-25 * std::cos(a), 25 * std::sin(a));
+  const auto centre = congruency_centre(head, revolved(cup, 60), Vec3(0.6, -0.5, 0.4), 150);
+  EXPECT_LE(centre.centre.norm(), 0.05);
+  EXPECT_LE(centre.rms, 0.05);
+}
+TEST(JointCentre, NeedsASurface) {
+  EXPECT_THROW(find_joint_centre({}), Error);
+  SurfaceSet surfaces;
+  surfaces["femur"].mesh = head_on_neck();
+  EXPECT_THROW(find_joint_centre(surfaces, {.smallest_radius = 30.0, .largest_radius = 20.0}),
+               Error);
+}
+TEST(JointCentre, IsBitIdenticalForOneAndEightThreads) {
+  SurfaceSet surfaces;
+  surfaces["femur"].mesh = head_on_neck();
+  surfaces["acetabular_cartilage"].mesh = socket_shell(Vec3(0.5, 0, 0));
+  const auto run = [&] {
+    std::vector<double> numbers;
+    for (const auto& c : find_joint_centre(surfaces, {.congruency_samples = 60}).all) {
+      numbers.insert(numbers.end(), {c.centre.x(), c.centre.y(), c.centre.z(), c.interval});
+    }
+    return numbers;
+  };
+  EXPECT_EQ(with_threads(1, run), with_threads(8, run));
+}
+
+TEST(BoneFrames, FollowIsbFromLandmarks) {
+  const Mat3 P = pelvis_axes(Vec3(-120, -50, 0), Vec3(120, -50, 0), Vec3(0, 100, 0));  // LPS
+  EXPECT_LE((P - supine_axes()).norm(), 1e-12);
+  for (const Side side : {Side::left, Side::right}) {
+    const double s = side == Side::right ? -1.0 : 1.0;  // LPS x is left
+    const Mat3 F =
+        femur_axes(Vec3(s * 90, 0, 0), Vec3(s * 50, 0, -400), Vec3(s * 130, 0, -400), side);
+    EXPECT_LE((F - supine_axes()).norm(), 1e-12);
+  }
+}
+TEST(BoneFrames, SayWhereTheyComeFrom) {
+  FrameLandmarks landmarks{.points = {{"asis_right", Vec3(-120, -50, 0)},
+                                      {"asis_left", Vec3(120, -50, 0)},
+                                      {"psis_right", Vec3(-45, 100, 0)},
+                                      {"medial_epicondyle", Vec3(-50, 0, -480)},
+                                      {"lateral_epicondyle", Vec3(-130, 0, -480)}},
+                           .source = "landmarks"};
+  const Vec3 centre(-90, 0, -80);
+  const auto whole = make_bone_frames({}, landmarks, centre, Side::right);
+  EXPECT_EQ(whole.pelvis.source, "landmarks");
+  EXPECT_EQ(whole.femur.source, "landmarks");
+  EXPECT_EQ(whole.pelvis.X_IB.p, centre);
+  EXPECT_LE((whole.pelvis.X_IB.R - supine_axes()).norm(), 1e-12);
+  landmarks.points.erase("asis_left");
+  const auto half = make_bone_frames({}, landmarks, centre, Side::right);
+  EXPECT_EQ(half.pelvis.source, "landmarks (one side) and image axes");
+  EXPECT_GT(half.pelvis.interval, whole.pelvis.interval);
+  const auto none = make_bone_frames({}, {}, centre, Side::right);
+  EXPECT_EQ(none.pelvis.source, "image axes");
+  EXPECT_EQ(none.femur.source, "image axes");
+}
+TEST(BoneFrames, RefuseLandmarksThatSpanNothing) {
+  EXPECT_THROW(pelvis_axes(Vec3(0, 0, 0), Vec3(10, 0, 0), Vec3(0, 100, 0)), Error);
+  EXPECT_THROW(pelvis_axes(Vec3(-120, 0, 0), Vec3(120, 0, 0), Vec3(0, 1, 0)), Error);
+}
+
+}  // namespace coxa::motion
