@@ -10,8 +10,8 @@ namespace coxa::pipeline {
 
 struct AtlasProfileOptions {
   std::vector<std::string> contrasts = {"t1", "dess"};  ///< among t1, t2, pd, dess
-  int n_hips = 4;          ///< >= 1: virtual hips per class of profiles
-  double voxel = 0.9;      ///< mm, > 0, of their images
+  int n_hips = 2;          ///< >= 1: virtual hips per class of profiles
+  double voxel = 1.1;      ///< mm, > 0, of their images
   double snr = 40.0;       ///< > 0, of their images
   std::uint64_t seed = 1;  ///< of the hips, their surroundings and noise
 };
