@@ -5,7 +5,7 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build ccache lld
   libeigen3-dev libtbb-dev libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev
-  libnanoflann-dev libinsighttoolkit5-dev libvtk9-dev libembree-dev libpng-dev zlib1g-dev
+  libnanoflann-dev libgdcm-dev libvtk9-dev libembree-dev libboost-dev zlib1g-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   clang-format python3
 )

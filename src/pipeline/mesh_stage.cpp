@@ -4,7 +4,11 @@
 #include <coxa/io/files.h>
 #include <coxa/io/surfaces.h>
 #include <coxa/io/tets.h>
+#include <coxa/mesh/remesh.h>
 #include <coxa/mesh/repair.h>
+#include <coxa/mesh/surface_distance.h>
+#include <coxa/mesh/topology.h>
+#include <coxa/mesh/unfold.h>
 #include <coxa/mesh/validate.h>
 #include <coxa/meshing/bone_side.h>
 #include <coxa/pipeline/segment_stage.h>
@@ -16,21 +20,71 @@ namespace coxa::pipeline {
 namespace fs = std::filesystem;
 namespace {
 
+/// Places where a closed surface cuts itself are evened out first, which keeps its triangles; the
+/// rest is repaired.
+TriMesh made_valid(TriMesh surface, const std::string& name, std::vector<std::string>& changes) {
+  const ValidityReport before = validate(surface);
+  if (before.has(FaultKind::self_intersection) && manifold_fault(surface).empty()) {
+    const Points points = surface.points;
+    if (update_unfolded(surface)) {
+      changes.push_back(join_text("evened out where it cut itself, by at most ",
+                                  (surface.points - points).rowwise().norm().maxCoeff(), " mm"));
+    } else {
+      surface.points = points;
+    }
+  }
+  try {
+    const Repaired repaired = repair(surface);
+    for (const std::string& line : repaired.report.lines()) changes.push_back(line);
+    return repaired.mesh;
+  } catch (const Error& refused) {
+    fail(refused.code(), name, ": ", refused.what());
+  }
+}
+
 /// The surface made valid, with what was changed as warnings.
 TriMesh usable_surface(const TriMesh& surface, const std::string& name, Record& record,
                        const Monitor& monitor) {
-  const ValidityReport report = validate(surface);
-  if (report.valid()) return surface;
-  try {
-    const Repaired repaired = repair(surface);
-    for (const std::string& line : repaired.report.lines()) {
-      record.warnings.push_back(name + ": " + line);
-      monitor.warn(record.warnings.back());
-    }
-    return repaired.mesh;
-  } catch (const Error& error) {
-    fail(error.code(), name, ": ", error.what());
+  if (validate(surface).valid()) return surface;
+  std::vector<std::string> changes;
+  const TriMesh valid = made_valid(surface, name, changes);
+  for (const std::string& line : changes) {
+    record.warnings.push_back(name + ": " + line);
+    monitor.warn(record.warnings.back());
   }
+  return valid;
+}
+
+// edge lengths, mm, tried when a surface as it is cannot be filled: even triangles about half as
+// long as cartilage is thick, longer ones where that fails, since they even out a ragged rim
+constexpr double kRemeshEdges[] = {0.7, 1.0, 1.4};
+
+/// The surface filled as it is, or else with its triangles made even.
+meshing::MeshingResult filled(const TriMesh& surface, const meshing::MeshingOptions& options,
+                              const std::string& name, Record& record, const Monitor& monitor) {
+  std::string why;
+  try {
+    return meshing::mesh_surface(surface, options, monitor);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::below_quality && error.code() != ErrorCode::bad_mesh) throw;
+    why = error.what();
+  }
+  for (const double edge : kRemeshEdges) {
+    TriMesh even = remesh(surface, {.target_edge = edge});
+    if (!update_unfolded(even)) continue;
+    try {
+      meshing::MeshingResult result = meshing::mesh_surface(even, options, monitor);
+      const SurfaceDistance moved = surface_distance(even, surface);
+      record.warnings.push_back(join_text(name, ": its triangles were made even (", edge,
+                                          " mm), which moved it by ", moved.assd,
+                                          " mm on average and ", moved.hd, " mm at most"));
+      monitor.warn(record.warnings.back());
+      return result;
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::cancelled) throw;
+    }
+  }
+  fail(ErrorCode::below_quality, name, ": ", why);
 }
 
 std::string method_name(meshing::Method method) {
@@ -85,7 +139,8 @@ Record run_mesh_file(const MeshRequest& request, const fs::path& out, const Moni
   record.inputs["surface"] = io::sha256_of_path(request.surface);
   const TriMesh surface =
       usable_surface(io::read_surface(request.surface), request.surface.string(), record, monitor);
-  meshing::MeshingResult result = meshing::mesh_surface(surface, request.options, monitor);
+  meshing::MeshingResult result =
+      filled(surface, request.options, request.surface.string(), record, monitor);
   if (!request.bone.empty() && has_sheet_tags(result.mesh)) {
     record.inputs["bone"] = io::sha256_of_path(request.bone);
     meshing::update_bone_side(result.mesh, io::read_surface(request.bone));
@@ -114,7 +169,7 @@ Record run_mesh_stage(const fs::path& segment_folder, const meshing::MeshingOpti
       const TriMesh surface =
           usable_surface(surfaces.at(cartilage).mesh, cartilage, record, monitor);
       meshing::MeshingResult result =
-          meshing::mesh_surface(surface, options, part_of(monitor, "mesh", done, done + 0.5));
+          filled(surface, options, cartilage, record, part_of(monitor, "mesh", done, done + 0.5));
       if (has_sheet_tags(result.mesh))
         meshing::update_bone_side(result.mesh, surfaces.at(bone).mesh);
       add_figures(result, std::string(cartilage) + "_", record);

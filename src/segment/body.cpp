@@ -1,5 +1,12 @@
 #include <coxa/segment/body.h>
 
+#include <coxa/core/parallel.h>
+#include <coxa/mesh/measures.h>
+#include <coxa/mesh/unfold.h>
+#include <coxa/mesh/vertex_normals.h>
+
+#include <cmath>
+
 #include <coxa/segment/force_field.h>
 
 namespace coxa::segment {
@@ -33,6 +40,39 @@ Points vertex_means(const SimplexMesh& mesh, const Points& values) {
   return means;
 }
 
+// twice volume over area is a layer's thickness; no cartilage is as thick as this, no bone as thin,
+// mm
+constexpr double kThickestLayer = 4.0;
+// a layer's two borders are a millimetre or two apart and much alike over some millimetres: noise
+// of single vertices is averaged over this distance (standard deviation, mm) before it can fold a
+// rim
+constexpr double kLayerSmoothing = 2.5;
+// vertices whose normals differ more (cosine) lie on the other face
+constexpr double kSameFace = 0.5;
+
+bool is_layer(const TriMesh& surface) {
+  return 2.0 * volume(surface) / area(surface) < kThickestLayer;
+}
+
+Points smoothed_on_one_face(const TriMesh& surface, const Points& field) {
+  const Points normals = vertex_normals(surface);
+  const double reach = 3.0 * kLayerSmoothing, factor = -0.5 / (kLayerSmoothing * kLayerSmoothing);
+  Points out(field.rows(), 3);
+  parallel_for(field.rows(), [&](Index v) {
+    Vec3 sum = Vec3::Zero();
+    double total = 0.0;
+    for (Index w = 0; w < field.rows(); ++w) {
+      const double squared = (surface.points.row(v) - surface.points.row(w)).squaredNorm();
+      if (squared > reach * reach || normals.row(v).dot(normals.row(w)) < kSameFace) continue;
+      const double weight = std::exp(factor * squared);
+      sum += weight * field.row(w).transpose();
+      total += weight;
+    }
+    out.row(v) = sum / total;
+  });
+  return out;
+}
+
 }  // namespace
 
 SimplexMesh finest_mesh(const Body& body) {
@@ -50,7 +90,9 @@ TriMesh surface_mesh(const Body& body) {
   for (int round = 0; round <= kGivingBack; ++round) {
     moved += face_means(mesh, displacement - vertex_means(mesh, moved));
   }
+  if (is_layer(surface)) moved = smoothed_on_one_face(surface, moved);
   surface.points += moved;
+  update_unfolded(surface);
   return surface;
 }
 

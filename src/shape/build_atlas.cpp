@@ -11,7 +11,7 @@
 #include "cartilage_place.h"
 #include "correspondence.h"
 #include "joint_fit.h"
-#include "unfold.h"
+#include <coxa/mesh/unfold.h>
 
 namespace coxa::shape {
 namespace {

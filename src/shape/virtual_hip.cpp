@@ -15,7 +15,7 @@
 
 #include "cartilage_sheet.h"
 #include "random_field.h"
-#include "unfold.h"
+#include <coxa/mesh/unfold.h>
 
 namespace coxa::shape {
 namespace {
@@ -190,7 +190,7 @@ VirtualHip surfaces_of(const DrawnHip& hip) {
 
 bool update_unfolded(VirtualHip& hip) {
   return std::all_of(hip.begin(), hip.end(),
-                     [](auto& entry) { return shape::update_unfolded(entry.second); });
+                     [](auto& entry) { return coxa::update_unfolded(entry.second); });
 }
 
 void check(const VirtualHipOptions& options) {

@@ -1,11 +1,11 @@
-#include "unfold.h"
+#include <coxa/mesh/unfold.h>
 
 #include <coxa/mesh/topology.h>
 #include <coxa/mesh/validate.h>
 
 #include <vector>
 
-namespace coxa::shape {
+namespace coxa {
 namespace {
 
 constexpr int kRounds = 25;
@@ -53,4 +53,4 @@ bool update_unfolded(TriMesh& mesh) {
   return self_intersections(mesh).empty();
 }
 
-}  // namespace coxa::shape
+}  // namespace coxa
