@@ -7,18 +7,14 @@ namespace {
 
 struct MeshArguments {
   std::string surface, bone, method = "automatic", out;
-  int layers = 0, nodes = 4;
+  int layers = 0;
   meshing::MeshingOptions options;
 };
 
 void run_mesh(const MeshArguments& arguments, Context& context) {
   pipeline::MeshRequest request{arguments.surface, arguments.bone, arguments.options};
-  const std::map<std::string, meshing::Method> methods{{"automatic", meshing::Method::automatic},
-                                                       {"medial", meshing::Method::medial},
-                                                       {"lattice", meshing::Method::lattice}};
-  request.options.method = methods.at(arguments.method);
+  if (arguments.method == "medial") request.options.method = meshing::Method::medial;
   if (arguments.layers > 0) request.options.layers = arguments.layers;
-  if (arguments.nodes == 10) request.options.order = meshing::ElementOrder::ten_node;
   const auto record = pipeline::run_mesh_file(request, arguments.out, context.monitor());
   context.print_result(arguments.out, record);
 }
@@ -34,14 +30,12 @@ void add_mesh(CLI::App& app, Context& context) {
   verb->add_option("--bone", arguments->bone,
                    "surface of the bone it lies on, to tag the bone side")
       ->check(CLI::ExistingFile);
-  verb->add_option("--method", arguments->method, "medial for sheets, lattice for solid shapes")
-      ->check(CLI::IsMember({"automatic", "medial", "lattice"}));
+  verb->add_option("--method", arguments->method, "how: by the medial sheet of a thin body")
+      ->check(CLI::IsMember({"automatic", "medial"}));
   verb->add_option("--tets", arguments->options.max_tets, "largest number of tetrahedra")
       ->check(CLI::PositiveNumber);
   verb->add_option("--layers", arguments->layers, "layers through the thickness, 1 to 8")
       ->check(CLI::Range(1, 8));
-  verb->add_option("--nodes", arguments->nodes, "nodes an element: 4 or 10")
-      ->check(CLI::IsMember({4, 10}));
   verb->add_option("--out", arguments->out, "VTU, Gmsh .msh, CalculiX .inp or FEBio .feb")
       ->required();
   verb->callback([arguments, &context] { run_mesh(*arguments, context); });

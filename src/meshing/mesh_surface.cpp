@@ -24,6 +24,9 @@ constexpr int kSizeTries = 8;
 void check(const MeshingOptions& o) {
   require(!o.layers || (*o.layers >= 1 && *o.layers <= 8), "layers must be 1 to 8, got ",
           o.layers.value_or(0));
+  require(o.method != Method::lattice,
+          "solid bodies cannot be filled yet: only the medial method is there");
+  require(o.order == ElementOrder::four_node, "ten-node elements are not made yet");
   require(o.max_tets > 100, "max_tets must be above 100, got ", o.max_tets);
   require(o.cell_per_thickness > 0, "cell_per_thickness must be > 0, got ", o.cell_per_thickness);
   require(o.rim_rounding >= 0 && o.rim_rounding <= 0.25,

@@ -8,10 +8,10 @@
 
 #include <cmath>
 
+#include <coxa/mesh/unfold.h>
 #include "cartilage_place.h"
 #include "correspondence.h"
 #include "joint_fit.h"
-#include <coxa/mesh/unfold.h>
 
 namespace coxa::shape {
 namespace {

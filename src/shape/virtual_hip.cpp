@@ -13,9 +13,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <coxa/mesh/unfold.h>
 #include "cartilage_sheet.h"
 #include "random_field.h"
-#include <coxa/mesh/unfold.h>
 
 namespace coxa::shape {
 namespace {

@@ -74,12 +74,12 @@ TEST_F(CommandLine, GivesErrorsAsJsonOnRequest) {
   EXPECT_TRUE(has(outcome, "{\"error\":{\"code\":\"bad_")) << outcome.output;
 }
 TEST_F(CommandLine, MeshesAClosedSurfaceAndWritesItsRecord) {
-  io::write_surface(folder_ / "ball.ply", test::icosphere(3, 8.0));
+  io::write_surface(folder_ / "shell.ply", test::lunate_shell());
   const Outcome outcome =
-      coxa_run("mesh --quiet --surface " + path("ball.ply") + " --out " + path("ball.vtu"));
+      coxa_run("mesh --quiet --surface " + path("shell.ply") + " --out " + path("shell.vtu"));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_TRUE(fs::exists(folder_ / "ball.vtu"));
-  EXPECT_NE(io::read_bytes(folder_ / "ball.json").find("\"verb\": \"mesh\""), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder_ / "shell.vtu"));
+  EXPECT_NE(io::read_bytes(folder_ / "shell.json").find("\"verb\": \"mesh\""), std::string::npos);
 }
 TEST_F(CommandLine, RefusesAnOpenSurfaceWithThePlaceAndLeavesNothing) {
   io::write_surface(folder_ / "sheet.ply", test::plate(0.0));
@@ -91,9 +91,9 @@ TEST_F(CommandLine, RefusesAnOpenSurfaceWithThePlaceAndLeavesNothing) {
   EXPECT_FALSE(fs::exists(folder_ / "sheet.json"));
 }
 TEST_F(CommandLine, SaysWhenTheDiskIsFull) {
-  io::write_surface(folder_ / "ball.ply", test::icosphere(2, 8.0));
+  io::write_surface(folder_ / "shell.ply", test::lunate_shell());
   const Outcome outcome =
-      coxa_run("mesh --quiet --surface " + path("ball.ply") + " --out /dev/full/ball.vtu");
+      coxa_run("mesh --quiet --surface " + path("shell.ply") + " --out /dev/full/shell.vtu");
   EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
 }
 TEST_F(CommandLine, EndsWithOneHundredAndThirtyOnCtrlCAndLeavesNothingHalfWritten) {
@@ -105,9 +105,17 @@ TEST_F(CommandLine, EndsWithOneHundredAndThirtyOnCtrlCAndLeavesNothingHalfWritte
   EXPECT_FALSE(fs::exists(folder_ / "p"));
   EXPECT_FALSE(fs::exists(folder_ / "p.partial"));
 }
+TEST_F(CommandLine, RefusesASolidBodyAndSaysWhy) {
+  io::write_surface(folder_ / "ball.ply", test::icosphere(3, 8.0));
+  const Outcome outcome =
+      coxa_run("mesh --quiet --surface " + path("ball.ply") + " --out " + path("ball.vtu"));
+  EXPECT_EQ(outcome.exit_code, 5);
+  EXPECT_TRUE(has(outcome, "no sheet")) << outcome.output;
+  EXPECT_FALSE(fs::exists(folder_ / "ball.vtu"));
+}
 TEST_F(CommandLine, SaysWhatAFileIs) {
-  io::write_surface(folder_ / "ball.ply", test::icosphere(2, 8.0));
-  const Outcome outcome = coxa_run("check " + path("ball.ply"));
+  io::write_surface(folder_ / "shell.ply", test::lunate_shell());
+  const Outcome outcome = coxa_run("check " + path("shell.ply"));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_TRUE(has(outcome, "surface"));
 }

@@ -30,8 +30,8 @@ struct BiasFieldOptions {
   double tolerance = 1e-4;     ///< stop when the log field changes by less (standard deviation)
 };
 
-/// Coil shading: a smooth positive field whose geometric mean over the body is 1; outside the body it
-/// keeps to its range inside.
+/// Coil shading: a smooth positive field whose geometric mean over the body is 1; outside the body
+/// it keeps to its range inside.
 ///
 /// The log histogram is sharpened, what a voxel lacks to its sharpened value is the field, and a
 /// polynomial keeps it smooth; repeated.

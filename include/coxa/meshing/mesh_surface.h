@@ -26,9 +26,9 @@ struct MeshingOptions {
   Method method = Method::automatic;
   /// 1 to 8 layers through a sheet, exactly; one, freely improved, if not set
   std::optional<int> layers = std::nullopt;
-  int max_tets = 20000;              ///< > 100; the cells are made larger until it holds
+  int max_tets = 20000;             ///< > 100; the cells are made larger until it holds
   double cell_per_thickness = 1.0;  ///< edge length over layer thickness, > 0
-  double rim_rounding = 0.2;  ///< mm, in [0, 0.25]: how far a knife-edge rim may move inwards
+  double rim_rounding = 0.2;        ///< mm, in [0, 0.25]: how far a knife-edge rim may move inwards
   ElementOrder order = ElementOrder::four_node;
   int improvement_rounds = 8;  ///< >= 0: rounds of flips and smoothing
 };
