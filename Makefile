@@ -9,7 +9,7 @@ deps:
 	@tools/install_deps.sh
 
 configure: deps
-	@cmake --preset release -DCOXA_WARNINGS_AS_ERRORS=$(STRICT) -DCOXA_BENCHMARKS=ON > build-configure.log 2>&1 \
+	@cmake --preset release -DCOXA_WARNINGS_AS_ERRORS=$(STRICT) > build-configure.log 2>&1 \
 	  && rm -f build-configure.log || { cat build-configure.log; rm -f build-configure.log; exit 1; }
 
 # The command at build/release/coxa.
@@ -20,16 +20,16 @@ build: configure
 demo: build
 	@tools/demo.sh
 
-# Everything fast: format, layers, unit tests, and the sanitizer build of the libraries without ITK and VTK.
+# Everything fast: format, layers, unit tests.
 test: check
 	@cmake --build $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure --timeout 600 -j 2
-	@$(MAKE) --no-print-directory sanitize
 
 check: configure
 	@tools/check_layers.py
 	@tools/check_format.sh
 
+# The fast tests of the libraries without image formats under address and undefined-behaviour sanitizers.
 sanitize: deps
 	@cmake --preset asan > /dev/null
 	@cmake --build build/asan
@@ -42,6 +42,7 @@ verify: configure
 
 # Speed of the hot paths.
 bench: configure
+	@cmake --preset release -DCOXA_BENCHMARKS=ON > /dev/null
 	@cmake --build $(BUILD)
 	@for program in $(BUILD)/*_bench; do echo "== $$program"; $$program || exit 1; done
 
