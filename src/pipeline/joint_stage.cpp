@@ -13,6 +13,10 @@ namespace coxa::pipeline {
 namespace fs = std::filesystem;
 namespace {
 
+// about what a joint centre from surfaces is uncertain by; half a millimetre would squeeze thin
+// cartilage by a third, mm
+constexpr double kCentreShift = 0.1;
+
 joint::JointModel read_model(const JointRequest& request, const motion::BoneFrames& frames) {
   joint::JointModel model;
   model.side = request.side;
@@ -48,6 +52,12 @@ Record wanted_record(const JointRequest& request) {
   if (!request.hip_bone.empty()) record.inputs["hip_bone"] = io::sha256_of_path(request.hip_bone);
   if (!request.femur.empty()) record.inputs["femur"] = io::sha256_of_path(request.femur);
   return record;
+}
+
+joint::JointOptions joint_options() {
+  joint::JointOptions options;
+  options.centre_shift = kCentreShift;
+  return options;
 }
 
 joint::LoadCase load_case(const JointRequest& request, const joint::JointModel& model) {
@@ -150,7 +160,7 @@ Record run_joint_stage(const JointRequest& request, const fs::path& folder, Reus
     const MotionArtefacts artefacts = read_motion_artefacts(request.motion, request.side);
     const joint::JointModel model = read_model(request, artefacts.frames);
     const joint::JointResult result =
-        joint::simulate(model, artefacts.motion, load_case(request, model), {},
+        joint::simulate(model, artefacts.motion, load_case(request, model), joint_options(),
                         part_of(monitor, "joint", 0.0, 0.95));
     if (result.n_converged() == 0) {
       fail(ErrorCode::no_convergence,
