@@ -8,6 +8,9 @@ namespace {
 
 /// mm. A residual of this much, after the last resolution, means that image and shape disagree.
 constexpr double kResidualScale = 1.5;
+/// mm. Bones that the examples do not describe leave the fitted model by 1 to 2 mm on average; what
+/// leaves it by this much is something else.
+constexpr double kDeviationScale = 4.0;
 /// Share of a structure that must be in view for full confidence in the whole.
 constexpr double kFullView = 0.2;
 
@@ -26,9 +29,11 @@ StructureQuality quality_of(const Body& body) {
     quality.correlation /= weight;
     quality.residual /= weight;
   }
+  const double deviation = (body.points - body.fit.points).rowwise().norm().mean();
   quality.in_view /= static_cast<double>(std::max<Eigen::Index>(1, body.match.seen.size()));
   quality.confidence = std::clamp(quality.correlation, 0.0, 1.0) *
                        std::exp(-quality.residual / kResidualScale) *
+                       std::exp(-std::pow(deviation / kDeviationScale, 2)) *
                        std::min(1.0, quality.in_view / kFullView);
   return quality;
 }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 
 namespace coxa::segment {
 namespace {
@@ -108,27 +109,32 @@ void update_through(std::vector<Body>& bodies, const std::vector<Resolution>& re
   }
 }
 
-/// The contrast whose profiles, after placing the bodies with them, fit this image best.
-std::string best_contrast(const std::vector<Body>& bodies, PreparedImage image,
-                          const Resolution& resolution, const SegmentOptions& options) {
+/// The contrast whose profiles, after placing the bodies with them, fit this
+/// image best, beside the images whose contrast is known already: a second
+/// image with half the hip cannot mislead what the first one shows.
+std::string best_contrast(const std::vector<Body>& bodies, std::span<const PreparedImage> known,
+                          const PreparedImage& image, const Resolution& resolution,
+                          const SegmentOptions& options) {
   if (options.contrast) return *options.contrast;
   std::set<std::string> contrasts;
   for (const shape::ProfileSet& set : bodies.front().model->profiles)
     contrasts.insert(set.contrast);
   require(!contrasts.empty(), "the atlas has no intensity profiles");
-  if (resolution.image_sigma > 0.0) image.volume = smoothed(image.volume, resolution.image_sigma);
+  std::vector<PreparedImage> images(known.begin(), known.end());
+  images.push_back(image);
+  images = smoothed_images(images, resolution.image_sigma);
   std::string best;
   double best_fit = -kInfinity;
   SegmentOptions few = options;
   few.iterations = std::min(options.iterations, 6);
   for (const std::string& contrast : contrasts) {
-    image.contrast = contrast;
+    images.back().contrast = contrast;
     std::vector<Body> trial = bodies;
     const std::vector<Obstacles> none(trial.size());
     const std::vector<TriMesh> no_host(trial.size());
-    update_bodies(trial, {{&image, 1}, none, no_host}, resolution, few, {});
+    update_bodies(trial, {images, none, no_host}, resolution, few, {});
     double fit = 0.0;
-    for (const Body& body : trial) fit += body.match.correlation.mean();
+    for (const Body& body : trial) fit += body.match.here.mean();
     if (fit > best_fit) {
       best_fit = fit;
       best = contrast;
@@ -173,8 +179,9 @@ class Hip {
       bones.push_back(placed_body(*models[b], placed[b]));
     }
     const auto resolutions = bone_resolutions(options_.search_range);
-    for (PreparedImage& image : images_) {
-      image.contrast = best_contrast(bones, image, resolutions.front(), options_);
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+      images_[i].contrast = best_contrast(bones, std::span(images_).first(i), images_[i],
+                                          resolutions.front(), options_);
     }
     update_through(bones, resolutions, images_, std::vector<Obstacles>(bones.size()),
                    std::vector<TriMesh>(bones.size()), options_, monitor);

@@ -169,6 +169,13 @@ TEST(Segment, RefusesAnImageThatDoesNotShowTheHip) {
   Volume elsewhere = image();
   elsewhere.origin += Vec3(300.0, 0.0, 0.0);
   EXPECT_NE(text_of_failure({elsewhere}, marks, options()), "");
+  // another object where the hip should be: a smaller ball
+  const Volume ball = toy::image_of(test::icosphere(3, 12.0), {.noise = 3.0, .core = 12.0});
+  EXPECT_NE(text_of_failure({ball}, marks, options()).find("quality"), std::string::npos);
+  Volume noise = image();
+  Rng rng(3);
+  for (float& value : noise.values) value = static_cast<float>(100.0 + 40.0 * rng.normal());
+  EXPECT_NE(text_of_failure({noise}, marks, options()).find("quality"), std::string::npos);
 }
 
 TEST(Segment, RefusesNoImageAndTooFewLandmarks) {
@@ -176,6 +183,17 @@ TEST(Segment, RefusesNoImageAndTooFewLandmarks) {
   shape::Landmarks few = toy::landmarks_of(kEgg);
   while (few.size() > 3) few.erase(few.begin());
   EXPECT_NE(text_of_failure({image()}, few, options()).find("at least 6"), std::string::npos);
+}
+
+TEST(Segment, TwoImagesTogetherSeeMoreThanEither) {
+  const Volume top = toy::image_of(truth(), {.low = 0.0, .high = 42.0, .noise = 3.0});
+  const Volume bottom =
+      toy::image_of(truth(), {.low = -42.0, .high = 0.0, .noise = 3.0, .value = toy::bright_value});
+  SegmentOptions o = options();
+  const SegmentResult both = segment({top, bottom}, atlas(), Side::right, noisy_landmarks(3.0), o);
+  EXPECT_LE(error_of(both), 0.25);
+  EXPECT_LT(error_of(both), error_of(run(top)));
+  EXPECT_EQ(both.contrasts, (std::vector<std::string>{"t1", "bright"}));
 }
 
 }  // namespace coxa::segment

@@ -138,6 +138,7 @@ struct Scan {
   double half = 42.0;               ///< mm, half the field of view along x and y
   double low = -42.0, high = 42.0;  ///< mm along z
   double noise = 0.0;
+  double core = 24.0;  ///< mm; far from the surface, what is nearer to the origin is inside
   double (*value)(double) = t1_value;
   RigidTransform grid = {};  ///< pose of the grid's axes
 };
@@ -160,7 +161,7 @@ inline Volume image_of(const TriMesh& surface, const Scan& scan) {
       for (Index i = 0; i < volume.size[0]; ++i) {
         const Vec3 p = volume.position(Vec3(i, j, k));
         const auto near = tree.nearest_within(p, 7.0);
-        double d = p.norm() < 24.0 ? -7.0 : 7.0;
+        double d = p.norm() < scan.core ? -7.0 : 7.0;
         if (near) d = tree.sign_at(p, *near) * std::sqrt(near->squared_distance);
         volume.values.push_back(static_cast<float>(scan.value(d) + scan.noise * rng.normal()));
       }
