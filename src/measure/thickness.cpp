@@ -13,6 +13,12 @@ namespace {
 // a ray steps this far past a triangle that it has met, mm
 constexpr double kStep = 1e-6;
 
+void check(const TriMesh& bone, const TriMesh& articular, const ThicknessOptions& options) {
+  const double limit = options.max_thickness, offset = options.ray_offset;
+  require(0 <= offset && offset < limit, "ray_offset must be in [0, ", limit, ") mm, got ", offset);
+  require(!bone.empty() && !articular.empty(), "bone or articular mesh has no triangle");
+}
+
 Vec3 area_normal(const TriMesh& mesh, Index t) {
   const Vec3 a = mesh.points.row(mesh.triangles(t, 0)), b = mesh.points.row(mesh.triangles(t, 1)),
              c = mesh.points.row(mesh.triangles(t, 2));
@@ -23,11 +29,8 @@ Vec3 area_normal(const TriMesh& mesh, Index t) {
 
 Eigen::VectorXd cartilage_thickness(const TriMesh& bone, const TriMesh& articular,
                                     const ThicknessOptions& options) {
-  const double limit = options.max_thickness;
-  const double offset = options.ray_offset;
-  require(0 <= offset && offset < limit, "ray_offset must be in [0, ", limit, ") mm, got ", offset);
-  require(!bone.empty() && !articular.empty(), "bone or articular mesh has no triangle");
-
+  check(bone, articular, options);
+  const double limit = options.max_thickness, offset = options.ray_offset;
   const Points normals = vertex_normals(bone);  // V×3, unit length
   const TriangleTree tree(articular.points, articular.triangles);
   Eigen::VectorXd thickness(bone.n_vertices());
@@ -44,10 +47,8 @@ Eigen::VectorXd cartilage_thickness(const TriMesh& bone, const TriMesh& articula
 
 Eigen::VectorXd closed_cartilage_thickness(const TriMesh& bone, const TriMesh& cartilage,
                                            const ThicknessOptions& options) {
+  check(bone, cartilage, options);
   const double limit = options.max_thickness;
-  require(0 <= options.ray_offset && options.ray_offset < limit, "ray_offset must be in [0, ",
-          limit, ") mm, got ", options.ray_offset);
-  require(!bone.empty() && !cartilage.empty(), "bone or cartilage mesh has no triangle");
   const Points normals = vertex_normals(bone);
   const TriangleTree tree(cartilage.points, cartilage.triangles);
   Eigen::VectorXd thickness = Eigen::VectorXd::Constant(bone.n_vertices(), kNaN);

@@ -22,8 +22,8 @@ namespace {
 
 /// Places where a closed surface cuts itself are evened out first, which keeps its triangles; the
 /// rest is repaired.
-TriMesh made_valid(TriMesh surface, const std::string& name, std::vector<std::string>& changes) {
-  const ValidityReport before = validate(surface);
+TriMesh made_valid(TriMesh surface, const ValidityReport& before, const std::string& name,
+                   std::vector<std::string>& changes) {
   if (before.has(FaultKind::self_intersection) && manifold_fault(surface).empty()) {
     const Points points = surface.points;
     if (update_unfolded(surface)) {
@@ -45,9 +45,10 @@ TriMesh made_valid(TriMesh surface, const std::string& name, std::vector<std::st
 /// The surface made valid, with what was changed as warnings.
 TriMesh usable_surface(const TriMesh& surface, const std::string& name, Record& record,
                        const Monitor& monitor) {
-  if (validate(surface).valid()) return surface;
+  const ValidityReport report = validate(surface);
+  if (report.valid()) return surface;
   std::vector<std::string> changes;
-  const TriMesh valid = made_valid(surface, name, changes);
+  const TriMesh valid = made_valid(surface, report, name, changes);
   for (const std::string& line : changes) {
     record.warnings.push_back(name + ": " + line);
     monitor.warn(record.warnings.back());
