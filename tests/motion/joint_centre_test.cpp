@@ -65,6 +65,17 @@ TriMesh socket_shell(const Vec3& c) {
   return mesh;
 }
 
+// the same without the triangles that close it at its last vertex
+TriMesh open_at_the_end(TriMesh mesh) {
+  const Index last = mesh.n_vertices() - 1;
+  std::vector<Index> kept;
+  for (Index t = 0; t < mesh.n_triangles(); ++t) {
+    if ((mesh.triangles.row(t).array() != last).all()) kept.push_back(t);
+  }
+  mesh.triangles = Triangles(mesh.triangles(kept, Eigen::all));
+  return mesh;
+}
+
 TriMesh noisy(TriMesh mesh, double sd, std::uint64_t seed) {
   Rng rng(seed);
   for (Index v = 0; v < mesh.n_vertices(); ++v) mesh.points.row(v) += sd * rng.normal3();
@@ -120,7 +131,8 @@ TEST(JointCentre, ByCongruencyIsTheCentreOfARoundHead) {
   const TriMesh head = revolved(profile, 90);
   std::vector<Vec2> cup;
   for (double a = 0.05; a < 1.4; a += 0.05) cup.emplace_back(-25 * std::cos(a), 25 * std::sin(a));
-  const auto centre = congruency_centre(head, revolved(cup, 60), Vec3(0.6, -0.5, 0.4), 150);
+  const auto centre =
+      congruency_centre(head, open_at_the_end(revolved(cup, 60)), Vec3(0.6, -0.5, 0.4), 150);
   EXPECT_LE(centre.centre.norm(), 0.05);
   EXPECT_LE(centre.rms, 0.05);
 }

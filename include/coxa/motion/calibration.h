@@ -14,12 +14,12 @@ enum class CentreSource { harrington, bell, score, functional_sphere };
 
 struct CalibrationOptions {
   Side side = Side::right;
-  MarkerMap map;                   ///< empty: default_marker_map(side)
-  Index first_frame = 0;           ///< frames that calibrate: [first_frame, end_frame)
-  std::optional<Index> end_frame;  ///< to the end of the recording when absent
+  MarkerMap map = {};                   ///< empty: default_marker_map(side)
+  Index first_frame = 0;                ///< frames that calibrate: [first_frame, end_frame)
+  std::optional<Index> end_frame = {};  ///< to the end of the recording when absent
   CentreSource centre = CentreSource::harrington;
-  std::optional<Vec3>
-      joint_centre_pelvis;  ///< mm, pelvis ISB axes from mid-ASIS: wins over `centre` (an MRI's)
+  std::optional<Vec3> joint_centre_pelvis =
+      {};  ///< mm, pelvis ISB axes from mid-ASIS: wins over `centre` (an MRI's)
   double joint_centre_sd = 2.0;  ///< mm, of joint_centre_pelvis
   double knee_half_width =
       55.0;                ///< mm, lateral marker to knee centre where there is no medial one

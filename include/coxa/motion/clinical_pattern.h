@@ -22,11 +22,11 @@ struct PatternPose {
 
 /// A movement of the hip without markers: poses in time.
 struct ClinicalPattern {
-  std::string name;  ///< for example "fadir"
-  std::string description;
-  std::string source;  ///< where the angles come from
+  std::string name = {};  ///< for example "fadir"
+  std::string description = {};
+  std::string source = {};  ///< where the angles come from
   Interpolation interpolation = Interpolation::smooth;
-  std::vector<PatternPose> poses;  ///< at least two, first at time 0
+  std::vector<PatternPose> poses = {};  ///< at least two, first at time 0
 };
 
 struct MovementOptions {

@@ -23,8 +23,8 @@ struct JointCentre {
 };
 
 struct JointCentreOptions {
-  std::optional<Vec3>
-      start;  ///< mm, near the head's centre (a landmark); found from the femur when absent
+  std::optional<Vec3> start =
+      {};  ///< mm, near the head's centre (a landmark); found from the femur when absent
   double smallest_radius = 15.0;  ///< mm, of a head that is looked for without a start
   double largest_radius = 34.0;   ///< mm
   double neck_cone =

@@ -13,7 +13,7 @@ struct CleaningOptions {
   double jump = 20.0;           ///< mm, > 0, between a marker and where its last two frames lead
   double cutoff_hz = 0.0;  ///< low-pass (Butterworth, 4th order, forwards and backwards); 0: none
   /// Markers of one segment, which carry each other over gaps; labels that are absent are ignored.
-  std::vector<std::vector<std::string>> segments;
+  std::vector<std::vector<std::string>> segments = {};
 };
 
 /// A run of frames [begin, end) in which a marker was not seen, and what was done about it.

@@ -11,13 +11,14 @@ namespace coxa::motion {
 /// Everything that turns a raw recording into one hip's movement.
 struct TrackSetup {
   Side side = Side::right;
-  std::optional<HipModel> model;  ///< where absent, `calibration` makes one from anatomical markers
-  CalibrationOptions calibration;             ///< its side is `side`
-  std::map<std::string, std::string> rename;  ///< label in the recording -> label in the model
-  Index first_frame = 0;                      ///< frames [first_frame, end_frame) are tracked
-  std::optional<Index> end_frame;
-  CleaningOptions cleaning;  ///< empty `segments`: the model's pelvis and thigh markers
-  TrackOptions track;
+  std::optional<HipModel> model =
+      {};  ///< where absent, `calibration` makes one from anatomical markers
+  CalibrationOptions calibration = {};             ///< its side is `side`
+  std::map<std::string, std::string> rename = {};  ///< label in the recording -> label in the model
+  Index first_frame = 0;                           ///< frames [first_frame, end_frame) are tracked
+  std::optional<Index> end_frame = {};
+  CleaningOptions cleaning = {};  ///< empty `segments`: the model's pelvis and thigh markers
+  TrackOptions track = {};
 };
 
 struct TrackedRecording {
