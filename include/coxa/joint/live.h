@@ -1,0 +1,51 @@
+#pragma once
+
+#include <coxa/joint/simulate.h>
+
+#include <memory>
+#include <string>
+
+namespace coxa::joint {
+
+/// Tolerances for a hip led by hand: one rotation step an answer, few rounds. What that costs in
+/// accuracy is what `LiveHip::settle` finds.
+JointOptions live_options();
+
+/// A hip that follows a hand: each call goes one step from the state the last one left.
+///
+/// Results depend on the way taken, as far as the tolerance of `live_options` lets them.
+class LiveHip {
+ public:
+  /// Seats the head in the image pose.
+  /// @param model  kept by reference: must outlive it
+  /// @param load   mode `force`: one force for all poses
+  /// @throws Error bad_input, bad_mesh for model or load; no_convergence if the head cannot be
+  ///         seated
+  LiveHip(const JointModel& model, const LoadCase& load);
+  ~LiveHip();
+
+  struct Step {
+    FrameResult frame;    ///< at the pose reached; `angles` are those
+    bool arrived = true;  ///< false: another call goes further
+  };
+  /// Turns the femur at most one `max_rotation_step` of the way to `target` and finds the
+  /// equilibrium there.
+  ///
+  /// Where the bones would meet the femur stays, and the frame says beyond_bony_limit; where no
+  /// equilibrium is found it stays likewise, and the frame is failed with the reason.
+  /// @throws Error cancelled
+  Step step_towards(const motion::HipAngles& target, const Monitor& monitor = {});
+
+  /// Equilibrium at the present pose to the full tolerance of JointOptions.
+  /// @throws Error cancelled, leaving the state as it was
+  FrameResult settle(const Monitor& monitor = {});
+
+  /// Where the femur is.
+  motion::HipAngles angles() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace coxa::joint

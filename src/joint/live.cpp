@@ -1,0 +1,123 @@
+#include <coxa/joint/live.h>
+
+#include <coxa/core/error.h>
+#include <coxa/geom/fits.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "bone_limit.h"
+#include "frame_figures.h"
+#include "march.h"
+
+namespace coxa::joint {
+
+JointOptions live_options() {
+  JointOptions options;
+  options.residual_tolerance = 5e-3;
+  options.penetration_tolerance = 0.03;
+  options.max_newton_iterations = 8;
+  options.max_contact_updates = 6;
+  options.max_cutbacks = 0;
+  return options;
+}
+
+struct LiveHip::Impl {
+  const JointModel& model;
+  LoadMode mode;
+  Vec3 force;  // image axes; NaN with a prescribed pose
+  JointOptions rough = live_options(), exact;
+  HipSystem system;
+  BoneLimit limit;
+  March rough_march, exact_march;
+  ClockFace clock;
+  HipState state;
+
+  Impl(const JointModel& hip, const LoadCase& load)
+      : model(hip),
+        mode(load.mode),
+        force(mode == LoadMode::force ? Vec3(hip.X_IP.R * load.force_P.row(0).transpose())
+                                      : Vec3::Constant(kNaN)),
+        system(hip),
+        limit(hip),
+        rough_march(system, mode, rough),
+        exact_march(system, mode, exact),
+        clock(socket_clock(hip)),
+        state{system.reference(), {}, system.make_contact(exact.contact_stiffness)} {}
+
+  Vec3 found() const { return state.x.segment<3>(3 * system.translation()); }
+  RigidTransform placed(const BonePose& pose) const {
+    return {pose.R, system.centre() + pose.shift + found() - pose.R * system.centre()};
+  }
+  BonePose pose_at(const motion::HipAngles& angles) const {
+    const Mat3 R_PF = motion::rotation_from_angles(angles, model.side);
+    return {model.X_IP.R * R_PF * model.X_IF.R.transpose(), Vec3::Zero()};
+  }
+  motion::HipAngles angles_of(const BonePose& pose) const {
+    return motion::angles_from_rotation(model.X_IP.R.transpose() * pose.R * model.X_IF.R,
+                                        model.side);
+  }
+  FrameResult solve(March& march, const BonePose& target, const Monitor& monitor);
+};
+
+FrameResult LiveHip::Impl::solve(March& march, const BonePose& target, const Monitor& monitor) {
+  const auto start = std::chrono::steady_clock::now();
+  FrameResult frame;
+  const Settling settling = march.advance(state, target, force, monitor);
+  frame.status = settling.converged ? FrameStatus::converged : FrameStatus::failed;
+  frame.reason = settling.reason;
+  frame.residual = settling.residual;
+  frame.iterations = settling.iterations;
+  frame.X_II = placed(state.pose);
+  frame.angles = angles_of(state.pose);
+  if (settling.converged) {
+    frame.translation = found();
+    frame.balance.applied_force = force;
+    update_figures(frame, model, system, state, clock);
+  }
+  frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return frame;
+}
+
+LiveHip::LiveHip(const JointModel& model, const LoadCase& load) {
+  check_model(model);
+  require(load.mode != LoadMode::force || load.force_P.rows() == 1, "the load has ",
+          load.force_P.rows(), " forces; a hip led by hand takes one for all poses");
+  impl_ = std::make_unique<Impl>(model, load);
+  if (load.mode != LoadMode::force) return;
+  const std::string reason = impl_->exact_march.equilibrium().seat(impl_->state, impl_->force);
+  if (!reason.empty()) fail(ErrorCode::no_convergence, reason);
+}
+
+LiveHip::~LiveHip() = default;
+
+motion::HipAngles LiveHip::angles() const { return impl_->angles_of(impl_->state.pose); }
+
+LiveHip::Step LiveHip::step_towards(const motion::HipAngles& target, const Monitor& monitor) {
+  const BonePose from = impl_->state.pose, to = impl_->pose_at(target);
+  const double way = rotation_vector(to.R * from.R.transpose()).norm();
+  const double share = std::min(1.0, impl_->rough.max_rotation_step / std::max(way, 1e-12));
+  const BonePose next = share < 1.0 ? between(from, to, share) : to;
+
+  const double clearance = impl_->limit.clearance(impl_->placed(next));
+  Step step;
+  if (clearance < 0.0) {
+    step.frame.status = FrameStatus::beyond_bony_limit;
+    step.frame.reason = join_text("the bones would overlap by ", -clearance, " mm");
+    step.frame.X_II = impl_->placed(from);
+    step.frame.angles = impl_->angles_of(from);
+  } else {
+    step.frame = impl_->solve(impl_->rough_march, next, monitor);
+    step.arrived = share == 1.0 || step.frame.status != FrameStatus::converged;
+  }
+  step.frame.bone_clearance = clearance;
+  return step;
+}
+
+FrameResult LiveHip::settle(const Monitor& monitor) {
+  FrameResult frame = impl_->solve(impl_->exact_march, impl_->state.pose, monitor);
+  frame.bone_clearance = impl_->limit.clearance(frame.X_II);
+  return frame;
+}
+
+}  // namespace coxa::joint

@@ -1,0 +1,59 @@
+#include <coxa/joint/live.h>
+
+#include <coxa/core/error.h>
+#include <gtest/gtest.h>
+
+#include "joint/layers.h"
+
+namespace coxa::joint {
+namespace {
+
+JointModel small_hip() {
+  return test::make_ball_in_cup({.cup_rings = 5, .head_rings = 7, .layers = 1});
+}
+const motion::HipAngles kFlexed{radians(5.0), 0.0, 0.0};
+
+TEST(LiveHip, ReachesAPoseStepByStep) {
+  const JointModel model = small_hip();
+  LiveHip hip(model, passive_examination(model, 500.0));
+  const LiveHip::Step first = hip.step_towards(kFlexed), second = hip.step_towards(kFlexed);
+  EXPECT_FALSE(first.arrived);
+  EXPECT_NEAR(degrees(first.frame.angles.flexion), 3.0, 1e-6);
+  EXPECT_TRUE(second.arrived);
+  EXPECT_NEAR(degrees(hip.angles().flexion), 5.0, 1e-6);
+  EXPECT_EQ(second.frame.status, FrameStatus::converged);
+}
+
+TEST(LiveHip, SettledAgreesWithTheFullSolution) {
+  const JointModel model = small_hip();
+  const LoadCase load = passive_examination(model, 500.0);
+  LiveHip hip(model, load);
+  while (!hip.step_towards(kFlexed).arrived) {
+  }
+  const FrameResult settled = hip.settle();
+  motion::HipMotion motion;
+  for (const motion::HipAngles& angles : {motion::HipAngles{}, kFlexed}) {
+    motion.time.push_back(angles.flexion);
+    motion.angles.push_back(angles);
+    motion.X_PF.push_back({motion::rotation_from_angles(angles, Side::right), Vec3::Zero()});
+  }
+  const JointResult full = simulate(model, motion, load, {.centre_shift = std::nullopt});
+  ASSERT_EQ(full.frames[1].status, FrameStatus::converged);
+  ASSERT_EQ(settled.status, FrameStatus::converged);
+  // a ball that turns in its cup: both ways end in the same equilibrium, to the tolerance
+  EXPECT_NEAR(settled.contact.peak_pressure_p99, full.frames[1].contact.peak_pressure_p99,
+              0.03 * full.frames[1].contact.peak_pressure_p99);
+  EXPECT_NEAR(settled.contact.contact_area, full.frames[1].contact.contact_area,
+              0.03 * full.frames[1].contact.contact_area);
+}
+
+TEST(LiveHip, RefusesALoadThatChangesFromFrameToFrame) {
+  const JointModel model = small_hip();
+  LoadCase load = passive_examination(model, 500.0);
+  load.force_P.conservativeResize(2, 3);
+  load.force_P.row(1) = load.force_P.row(0);
+  EXPECT_THROW(LiveHip(model, load), Error);
+}
+
+}  // namespace
+}  // namespace coxa::joint
