@@ -17,23 +17,6 @@ namespace {
 // cartilage by a third, mm
 constexpr double kCentreShift = 0.1;
 
-joint::JointModel read_model(const JointRequest& request, const motion::BoneFrames& frames) {
-  joint::JointModel model;
-  model.side = request.side;
-  model.acetabular_cartilage = io::read_tets(request.acetabular_cartilage);
-  model.femoral_cartilage = io::read_tets(request.femoral_cartilage);
-  if (!request.hip_bone.empty()) model.hip_bone = io::read_surface(request.hip_bone);
-  if (!request.femur.empty()) model.femur = io::read_surface(request.femur);
-  model.X_IP = frames.pelvis.X_IB;
-  model.X_IF = frames.femur.X_IB;
-  model.material.law = request.joint.law == "corotational"
-                           ? joint::MaterialLaw::corotational
-                           : joint::MaterialLaw::st_venant_kirchhoff;
-  model.material.youngs_modulus = request.joint.youngs_modulus;
-  model.material.poissons_ratio = request.joint.poisson_ratio;
-  return model;
-}
-
 Record wanted_record(const JointRequest& request) {
   Record record;
   record.verb = "joint";
@@ -58,12 +41,6 @@ joint::JointOptions joint_options() {
   joint::JointOptions options;
   options.centre_shift = kCentreShift;
   return options;
-}
-
-joint::LoadCase load_case(const JointRequest& request, const joint::JointModel& model) {
-  return request.joint.loading == Loading::joint_force
-             ? joint::passive_examination(model, request.joint.force)
-             : joint::prescribed_pose();
 }
 
 void add_limit(const joint::BonyLimit& limit, Record& record) {
@@ -118,6 +95,29 @@ fs::path existing(const io::Table& table, const std::string& key) {
 
 }  // namespace
 
+joint::JointModel read_joint_model(const JointRequest& request, const motion::BoneFrames& frames) {
+  joint::JointModel model;
+  model.side = request.side;
+  model.acetabular_cartilage = io::read_tets(request.acetabular_cartilage);
+  model.femoral_cartilage = io::read_tets(request.femoral_cartilage);
+  if (!request.hip_bone.empty()) model.hip_bone = io::read_surface(request.hip_bone);
+  if (!request.femur.empty()) model.femur = io::read_surface(request.femur);
+  model.X_IP = frames.pelvis.X_IB;
+  model.X_IF = frames.femur.X_IB;
+  model.material.law = request.joint.law == "corotational"
+                           ? joint::MaterialLaw::corotational
+                           : joint::MaterialLaw::st_venant_kirchhoff;
+  model.material.youngs_modulus = request.joint.youngs_modulus;
+  model.material.poissons_ratio = request.joint.poisson_ratio;
+  return model;
+}
+
+joint::LoadCase joint_load(const JointRequest& request, const joint::JointModel& model) {
+  return request.joint.loading == Loading::joint_force
+             ? joint::passive_examination(model, request.joint.force)
+             : joint::prescribed_pose();
+}
+
 JointRequest read_joint_request(const fs::path& path) {
   const io::Table root = io::Table::read(path);
   JointRequest request;
@@ -158,9 +158,9 @@ Record run_joint_stage(const JointRequest& request, const fs::path& folder, Reus
                        const Monitor& monitor) {
   const auto body = [&](const fs::path& partial, Record& record) {
     const MotionArtefacts artefacts = read_motion_artefacts(request.motion, request.side);
-    const joint::JointModel model = read_model(request, artefacts.frames);
+    const joint::JointModel model = read_joint_model(request, artefacts.frames);
     const joint::JointResult result =
-        joint::simulate(model, artefacts.motion, load_case(request, model), joint_options(),
+        joint::simulate(model, artefacts.motion, joint_load(request, model), joint_options(),
                         part_of(monitor, "joint", 0.0, 0.95));
     if (result.n_converged() == 0) {
       fail(ErrorCode::no_convergence,

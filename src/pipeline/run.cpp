@@ -87,6 +87,7 @@ class Run {
     }
     const Json manifest{{"coxa_version", version()},
                         {"subject", subject_.name},
+                        {"subject_file", fs::absolute(subject_.file).string()},
                         {"subject_file_sha256", io::sha256_of_path(subject_.file)},
                         {"stages", stages}};
     io::write_bytes(out_ / "manifest.json", manifest.dump(2) + "\n");

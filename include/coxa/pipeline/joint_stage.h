@@ -25,6 +25,11 @@ JointRequest read_joint_request(const std::filesystem::path& path);
 /// The request as TOML, paths relative to `folder`.
 std::string to_toml(const JointRequest& request, const std::filesystem::path& folder);
 
+/// The hip that a request names, read from its files.
+joint::JointModel read_joint_model(const JointRequest& request, const motion::BoneFrames& frames);
+/// The load it asks for.
+joint::LoadCase joint_load(const JointRequest& request, const joint::JointModel& model);
+
 /// What the joint stage computed, kept for pictures.
 struct JointOutcome {
   joint::JointModel model;
