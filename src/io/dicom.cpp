@@ -42,6 +42,7 @@ std::string file_name(const DicomSlice& slice) { return slice.file.filename().st
 std::string difference_between(const std::vector<DicomSlice>& slices) {
   const DicomSlice& first = slices.front();
   for (const DicomSlice& slice : slices) {
+    if (!slice.fault.empty()) return file_name(slice) + " " + slice.fault;
     if (slice.frames > 1) {
       return join_text("multi-frame DICOM (", slice.frames, " frames in ", file_name(slice),
                        ") is not read; convert it to NIfTI");
@@ -207,7 +208,8 @@ std::string describe(const DicomSeries& series) {
 }
 
 Volume read_series(const DicomSeries& series) {
-  require(series.usable(), "DICOM series ", series.id, " cannot be read: ", series.problem);
+  require(series.usable(), "DICOM series ", series.id, " cannot be read: ", series.problem,
+          "; export that series again, whole and each slice once");
   Volume volume = series.grid;
   volume.direction = orthonormal_axes(volume.direction, "DICOM series " + series.id);
   volume.values.reserve(static_cast<std::size_t>(volume.n_voxels()));
@@ -228,8 +230,10 @@ Volume read_dicom(const fs::path& folder, const std::optional<std::string>& sele
   }
   require(!matching.empty(), folder.string(), " has no series ", selected.value_or(""), "; it has",
           listing(all));
-  require(matching.size() == 1, folder.string(), " holds ", matching.size(),
-          " series; select one of them by its id:", listing(matching));
+  require(
+      matching.size() == 1, folder.string(), " holds ", matching.size(),
+      " series; select one of them by its id (--series, or series = \"…\" in the subject file):",
+      listing(matching));
   return read_series(matching.front());
 }
 

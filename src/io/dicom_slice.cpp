@@ -2,6 +2,8 @@
 
 #include <coxa/core/error.h>
 
+#include "dicom_outline.h"
+
 #include <gdcmImageReader.h>
 #include <gdcmReader.h>
 #include <gdcmStringFilter.h>
@@ -66,6 +68,16 @@ Vec3 unit_axis(const std::vector<double>& v, std::size_t begin) {
   return Vec3(v[begin], v[begin + 1], v[begin + 2]).normalized();
 }
 
+/// False too where the decoder throws.
+template <class F>
+bool succeeds(const F& decode) {
+  try {
+    return decode();
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 template <class T>
 void convert(const std::vector<char>& raw, double slope, double intercept,
              std::vector<float>& values) {
@@ -81,10 +93,18 @@ std::optional<DicomSlice> read_dicom_header(const fs::path& file) {
   gdcm::Trace::WarningOff();
   gdcm::Trace::ErrorOff();
   if (!has_dicom_preamble(file)) return std::nullopt;
+  const DicomOutline outline = outline_dicom(file);
+  if (!outline.header_whole) {
+    fail(ErrorCode::bad_file, file.string(), " ", outline.fault,
+         "; copy it again or take it out of the folder");
+  }
+  if (!outline.has_image) return std::nullopt;
   gdcm::Reader reader;
   reader.SetFileName(file.c_str());
-  if (!reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0010))) {
-    fail(ErrorCode::bad_file, file.string(), " is a broken DICOM file");
+  if (!succeeds([&] { return reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0010)); })) {
+    fail(ErrorCode::bad_file, file.string(),
+         " is a broken DICOM file: its header cannot be read; copy it again or take it out of the "
+         "folder");
   }
   Header header(reader.GetFile(), file);
   DicomSlice slice;
@@ -102,6 +122,7 @@ std::optional<DicomSlice> read_dicom_header(const fs::path& file) {
   slice.instance = static_cast<int>(header.number_or(0x0020, 0x0013, 0.0));
   slice.frames = static_cast<int>(header.number_or(0x0028, 0x0008, 1.0));
   slice.thickness = header.number_or(0x0018, 0x0050, kNaN);
+  slice.fault = outline.fault;
   if (slice.frames > 1) return slice;  // its places are per frame; the series will be refused
 
   const std::vector<double> place = header.needed(0x0020, 0x0032, 3, "image position");
@@ -118,14 +139,16 @@ std::optional<DicomSlice> read_dicom_header(const fs::path& file) {
 std::vector<float> read_dicom_pixels(const fs::path& file, int columns, int rows) {
   gdcm::ImageReader reader;
   reader.SetFileName(file.c_str());
-  if (!reader.Read()) fail(ErrorCode::bad_file, file.string(), ": the pixels cannot be decoded");
+  if (!succeeds([&] { return reader.Read(); }))
+    fail(ErrorCode::bad_file, file.string(), ": the pixels cannot be decoded");
   const gdcm::Image& image = reader.GetImage();
   const gdcm::PixelFormat format = image.GetPixelFormat();
   require(format.GetSamplesPerPixel() == 1, file.string(),
           " is a colour image; a scalar one is needed");
   std::vector<char> raw(image.GetBufferLength());
   std::vector<float> values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  if (!image.GetBuffer(raw.data()) || raw.size() != values.size() * format.GetPixelSize()) {
+  if (!succeeds([&] { return image.GetBuffer(raw.data()); }) ||
+      raw.size() != values.size() * format.GetPixelSize()) {
     fail(ErrorCode::bad_file, file.string(), ": the pixels are incomplete");
   }
   const double slope = image.GetSlope(), intercept = image.GetIntercept();

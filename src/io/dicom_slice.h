@@ -21,6 +21,7 @@ struct DicomSlice {
   Vec3 row_axis = Vec3::UnitX(), column_axis = Vec3::UnitY();
   double column_spacing = 1.0, row_spacing = 1.0;  ///< mm between columns, between rows
   double thickness = kNaN;                         ///< mm
+  std::string fault;  ///< why its pixels are not whole; empty if they are
 
   Vec3 normal() const { return row_axis.cross(column_axis); }
 };

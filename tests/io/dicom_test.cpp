@@ -108,6 +108,36 @@ TEST(Dicom, DuplicatedSliceIsRefused) {
   write_all(folder, slices);
   EXPECT_TRUE(contains(refusal(folder), "twice"));
 }
+/// Writes a stack whose third slice (of four) has only its first `bytes` bytes.
+void write_cut_stack(const TestFolder& folder, std::size_t bytes) {
+  write_all(folder, stack(4));
+  write_bytes(folder / "s2.dcm", dicom_bytes(stack(4)[2]).substr(0, bytes));
+}
+TEST(Dicom, SliceCutShortWithinItsPixelsIsNamed) {
+  const TestFolder folder;
+  write_cut_stack(folder, dicom_bytes(stack(4)[2]).size() - 5);
+  const std::string text = refusal(folder);
+  EXPECT_TRUE(contains(text, "s2.dcm is cut short: its pixels take 12 bytes and 7 are there"))
+      << text;
+  EXPECT_TRUE(contains(text, "export that series again")) << text;
+}
+TEST(Dicom, SliceCutShortAnywhereIsAnErrorAndNeverACrash) {
+  const TestFolder folder;
+  write_all(folder, stack(4));
+  const std::string whole_slice = dicom_bytes(stack(4)[2]);
+  const std::size_t whole = whole_slice.size();
+  for (std::size_t bytes = 0; bytes < whole; bytes += bytes < whole - 40 ? 7 : 1) {
+    write_bytes(folder / "s2.dcm", whole_slice.substr(0, bytes));
+    EXPECT_THROW(read_volume(folder.path()), Error) << bytes << " of " << whole;
+  }
+}
+TEST(Dicom, SliceWithFewerPixelsThanItsSizeNeedsIsNamed) {
+  const TestFolder folder;
+  std::vector<TestSlice> slices = stack(5);
+  slices[1].pixels.pop_back();
+  write_all(folder, slices);
+  EXPECT_TRUE(contains(refusal(folder), "too few pixels: 10 bytes where its size needs 12"));
+}
 TEST(Dicom, LocalizerIsRefused) {
   const TestFolder folder;
   std::vector<TestSlice> slices = stack(6);
