@@ -2,6 +2,7 @@
 
 #include <coxa/core/monitor.h>
 #include <coxa/joint/simulate.h>
+#include <coxa/motion/bone_frames.h>
 #include <coxa/pipeline/stage.h>
 #include <coxa/pipeline/subject.h>
 
