@@ -49,8 +49,14 @@ void SurfaceContact::append_constraint(ContactConstraint constraint, Entries& en
   constraints_.push_back(constraint);
 }
 
+/// What an owner that faces nothing any more knew.
+void SurfaceContact::forget(std::size_t owner) {
+  multiplier_[owner] = overlap_[owner] = 0.0;
+  stiffening_[owner] = 1.0;
+}
+
 void SurfaceContact::make_pointwise_constraints() {
-  std::vector<double> kept(multiplier_.size(), 0.0);
+  std::vector<bool> paired(multiplier_.size(), false);
   Entries entries;
   for (const ContactPair& pair : pairs_) {
     const auto s = static_cast<std::size_t>(pair.sample);
@@ -61,9 +67,11 @@ void SurfaceContact::make_pointwise_constraints() {
                        .offset = pair.offset + obstacle_height(pair),
                        .area = samples_[s].area},
                       entries);
-    kept[s] = multiplier_[s];
+    paired[s] = true;
   }
-  multiplier_ = std::move(kept);
+  for (std::size_t s = 0; s < paired.size(); ++s) {
+    if (!paired[s]) forget(s);
+  }
 }
 
 void SurfaceContact::make_nodal_constraints() {
@@ -79,8 +87,10 @@ void SurfaceContact::make_nodal_constraints() {
   }
   Entries entries;
   for (std::size_t v = 0; v < around.size(); ++v) {
-    if (around[v].empty()) multiplier_[v] = 0.0;
-    if (around[v].empty()) continue;
+    if (around[v].empty()) {
+      forget(v);
+      continue;
+    }
     ContactConstraint constraint{.owner = static_cast<Index>(v)};
     for (const auto& [p, share] : around[v]) constraint.area += share;
     entries.clear();

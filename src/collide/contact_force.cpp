@@ -6,6 +6,13 @@
 #include <span>
 
 namespace coxa::collide {
+namespace {
+
+// a constraint whose overlap falls slower than this from update to update is made stiffer by this,
+// up to that
+constexpr double kSlowShare = 0.5, kStiffening = 4.0, kMostStiffening = 1024.0;
+
+}  // namespace
 
 double SurfaceContact::gap(const ContactConstraint& constraint, const VecX& x) const {
   double sum = 0.0;
@@ -18,7 +25,7 @@ double SurfaceContact::gap(const ContactConstraint& constraint, const VecX& x) c
 
 double SurfaceContact::pressure(const ContactConstraint& constraint, const VecX& x) const {
   const double multiplier = multiplier_[static_cast<std::size_t>(constraint.owner)];
-  return std::max(0.0, multiplier - options_.stiffness * gap(constraint, x));
+  return std::max(0.0, multiplier - stiffness(constraint) * gap(constraint, x));
 }
 
 double SurfaceContact::energy(const VecX& x) const {
@@ -26,7 +33,7 @@ double SurfaceContact::energy(const VecX& x) const {
   for (const ContactConstraint& constraint : constraints_) {
     const double p = pressure(constraint, x),
                  multiplier = multiplier_[static_cast<std::size_t>(constraint.owner)];
-    sum += 0.5 * constraint.area / options_.stiffness * (p * p - multiplier * multiplier);
+    sum += 0.5 * constraint.area / stiffness(constraint) * (p * p - multiplier * multiplier);
   }
   return sum;
 }
@@ -92,27 +99,42 @@ void SurfaceContact::add_jacobian(const VecX& x, const VecX& /*v*/, double stiff
                                   double /*damping_factor*/, solve::BlockMatrix& A) const {
   for (const ContactConstraint& constraint : constraints_) {
     if (pressure(constraint, x) == 0.0) continue;
-    const double stiffness = stiffness_factor * options_.stiffness * constraint.area;
+    const double factor = stiffness_factor * stiffness(constraint) * constraint.area;
     for (Index i = constraint.first; i < constraint.last; ++i) {
       for (Index j = constraint.first; j < constraint.last; ++j) {
         const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
         A.at(stencil_particles_[a], stencil_particles_[b]) +=
-            stiffness * stencil_vectors_[a] * stencil_vectors_[b].transpose();
+            factor * stencil_vectors_[a] * stencil_vectors_[b].transpose();
       }
     }
   }
 }
 
-double SurfaceContact::update_multipliers(const VecX& x) {
+double SurfaceContact::update_multipliers(const VecX& x, double tolerance) {
   double penetration = 0.0;
   for (const ContactConstraint& constraint : constraints_) {
-    penetration = std::max(penetration, -gap(constraint, x));
-    multiplier_[static_cast<std::size_t>(constraint.owner)] = pressure(constraint, x);
+    const auto owner = static_cast<std::size_t>(constraint.owner);
+    const double overlap = -gap(constraint, x);
+    penetration = std::max(penetration, overlap);
+    multiplier_[owner] = pressure(constraint, x);
+    const bool slow = overlap_[owner] > 0.0 && overlap > kSlowShare * overlap_[owner];
+    if (slow && overlap > tolerance) {
+      stiffening_[owner] = std::min(kMostStiffening, kStiffening * stiffening_[owner]);
+    }
+    overlap_[owner] = overlap;
   }
   return penetration;
 }
 
-void SurfaceContact::clear_multipliers() { std::fill(multiplier_.begin(), multiplier_.end(), 0.0); }
+void SurfaceContact::clear_multipliers() {
+  std::fill(multiplier_.begin(), multiplier_.end(), 0.0);
+  clear_stiffening();
+}
+
+void SurfaceContact::clear_stiffening() {
+  std::fill(stiffening_.begin(), stiffening_.end(), 1.0);
+  std::fill(overlap_.begin(), overlap_.end(), 0.0);
+}
 
 void SurfaceContact::update_stiffness(double stiffness) {
   require(stiffness > 0.0, "contact stiffness must be positive (MPa/mm), got ", stiffness);

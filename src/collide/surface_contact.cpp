@@ -88,6 +88,8 @@ void SurfaceContact::make_samples() {
   const bool pointwise = options_.rule == ContactRule::pointwise;
   multiplier_.assign(pointwise ? samples_.size() : static_cast<std::size_t>(slave_.n_vertices()),
                      0.0);
+  stiffening_.assign(multiplier_.size(), 1.0);
+  overlap_.assign(multiplier_.size(), 0.0);
   boundary_edge_ = boundary_edges(other_mesh_.triangles);
   boundary_vertex_.assign(static_cast<std::size_t>(other_mesh_.n_vertices()), false);
   for (Index t = 0; t < other_mesh_.n_triangles(); ++t) {

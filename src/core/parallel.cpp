@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
+#include <mutex>
 
 namespace coxa {
 namespace {
@@ -18,6 +20,32 @@ constexpr std::int64_t kChunks = 256;
 std::atomic<int>& requested_threads() {
   static std::atomic<int> count{oneapi::tbb::info::default_concurrency()};
   return count;
+}
+
+/// Threads kept between loops: making them anew would cost more than a short loop.
+struct Crew {
+  explicit Crew(int n)
+      : limit(oneapi::tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(n)),
+        arena(n) {}
+
+  // more threads than cores are allowed on request, so that tests can witness independence of the
+  // count
+  oneapi::tbb::global_control limit;
+  oneapi::tbb::task_arena arena;
+};
+
+/// The crew of the thread count asked for; a loop that is still running keeps its own alive.
+std::shared_ptr<Crew> current_crew() {
+  static std::mutex mutex;
+  static std::shared_ptr<Crew> crew;
+  static int size = 0;
+  const std::lock_guard lock(mutex);
+  if (const int wanted = thread_count(); !crew || size != wanted) {
+    crew.reset();
+    crew = std::make_shared<Crew>(wanted);
+    size = wanted;
+  }
+  return crew;
 }
 
 }  // namespace
@@ -40,12 +68,8 @@ void run_chunks(std::int64_t n_chunks, const std::function<void(std::int64_t)>& 
     for (std::int64_t chunk = 0; chunk < n_chunks; ++chunk) body(chunk);
     return;
   }
-  // more threads than cores are allowed on request, so that tests can witness independence of the
-  // count
-  const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
-                                          static_cast<std::size_t>(thread_count()));
-  oneapi::tbb::task_arena arena(thread_count());
-  arena.execute([&] { oneapi::tbb::parallel_for(std::int64_t{0}, n_chunks, body); });
+  current_crew()->arena.execute(
+      [&] { oneapi::tbb::parallel_for(std::int64_t{0}, n_chunks, body); });
 }
 
 }  // namespace detail

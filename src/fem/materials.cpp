@@ -7,6 +7,7 @@
 
 #include "mode_tensors.h"
 #include "point_blocks.h"
+#include "polar_rotation.h"
 #include "principal_material.h"
 
 namespace coxa::fem {
@@ -78,6 +79,20 @@ class StVenantKirchhoff : public Material {
 class Corotational : public PrincipalMaterial {
  public:
   explicit Corotational(const Lame& lame) : lame_(lame) { check(lame); }
+
+  // energy and stress need the rotation only, which is cheaper than the singular values
+  double energy_density(const Mat3& F) const override {
+    const auto R = polar_rotation(F);
+    if (!R) return PrincipalMaterial::energy_density(F);
+    const double sum = R->cwiseProduct(F).sum() - 3.0;
+    return lame_.mu * (F - *R).squaredNorm() + 0.5 * lame_.lambda * sum * sum;
+  }
+  Mat3 first_piola(const Mat3& F) const override {
+    const auto R = polar_rotation(F);
+    if (!R) return PrincipalMaterial::first_piola(F);
+    const double sum = R->cwiseProduct(F).sum() - 3.0;
+    return 2.0 * lame_.mu * (F - *R) + lame_.lambda * sum * *R;
+  }
 
  private:
   PrincipalResponse respond(const Vec3& s) const override {

@@ -18,6 +18,13 @@ constexpr double kMaxNodeStep = 0.3;
 constexpr int kTangentAge = 8;
 // linear solves need not be better than this far from equilibrium, nor better than that near it
 constexpr double kLoosestLinear = 0.1, kTightestLinear = 1e-3;
+// net force left on a cartilage, relative to the joint force: half of what the bones' reactions may
+// be out of balance
+constexpr double kImbalance = 5e-4;
+// residual tolerance is tightened no further than by this for the sake of the net force
+constexpr double kFinestNewton = 0.03;
+// a state that is only passed through may be so much less exact
+constexpr double kSlackOnTheWay = 20.0, kOverlapSlack = 10.0;
 
 /// How the gap of a constraint changes with the translation.
 Vec3 translation_slope(const collide::SurfaceContact& contact,
@@ -48,9 +55,14 @@ Equilibrium::Equilibrium(const HipSystem& system, LoadMode mode, const JointOpti
       free_(system.free_particles(mode)),
       tangent_(free_, dynamics::total_pattern(system.elastic())) {}
 
-VecX Equilibrium::residual(const HipState& state, const Vec3& force) const {
-  VecX sum = dynamics::total_force(system_.elastic(), state.x, VecX::Zero(state.x.size()));
+VecX node_forces(const HipSystem& system, const HipState& state) {
+  VecX sum = dynamics::total_force(system.elastic(), state.x, VecX::Zero(state.x.size()));
   state.contact.add_force(state.x, VecX(), sum);
+  return sum;
+}
+
+VecX Equilibrium::residual(const HipState& state, const Vec3& force) const {
+  VecX sum = node_forces(system_, state);
   if (mode_ == LoadMode::force) sum.segment<3>(3 * system_.translation()) += force;
   for (std::size_t i = 0; i < free_.size(); ++i) {
     if (!free_[i]) sum.segment<3>(3 * static_cast<Eigen::Index>(i)).setZero();
@@ -162,32 +174,66 @@ std::string Equilibrium::seat(HipState& state, const Vec3& force) const {
   return reason;
 }
 
+/// Largest net force that the residual leaves on one of the two cartilages, N: the bones' reactions
+/// differ from the contact force by as much.
+double Equilibrium::net_force(const VecX& residual) const {
+  Vec3 socket = Vec3::Zero(), head = Vec3::Zero();
+  for (Index i = 0; i < system_.translation(); ++i) {
+    (i < system_.n_acetabular() ? socket : head) += residual.segment<3>(3 * i);
+  }
+  return std::max(socket.norm(), head.norm());
+}
+
+Settling Equilibrium::judge(const HipState& state, const Vec3& force, const Limits& limits) const {
+  Settling settling;
+  const double reference = reference_force(state, force);
+  const VecX left = residual(state, force);
+  settling.residual = left.norm() / reference;
+  settling.imbalance = net_force(left) / reference;
+  for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
+    settling.penetration = std::max(settling.penetration, -state.contact.gap(constraint, state.x));
+  }
+  settling.converged = settling.residual <= limits.residual &&
+                       settling.imbalance <= limits.imbalance &&
+                       settling.penetration <= limits.penetration;
+  return settling;
+}
+
 Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exactness,
                              const Monitor& monitor) {
-  const bool exact = exactness == Exactness::result;
-  const double tolerance = exact ? options_.residual_tolerance : 20.0 * options_.residual_tolerance;
-  const double overlap =
-      exact ? options_.penetration_tolerance : 10.0 * options_.penetration_tolerance;
-  Settling settling;
+  const double slack = exactness == Exactness::result ? 1.0 : kSlackOnTheWay;
+  const Limits limits{
+      .residual = slack * options_.residual_tolerance,
+      .imbalance = slack * kImbalance,
+      .penetration = std::min(slack, kOverlapSlack) * options_.penetration_tolerance};
+  int iterations = 0;
+  std::string reason;
   tangent_age_ = 0;
-  for (int round = 0; round <= options_.max_contact_updates; ++round) {
+  // what was stiffened on the way to the state before is slow to change, and may not be needed now
+  state.contact.clear_stiffening();
+  for (int round = 0;; ++round) {
     monitor.check_cancelled();
     state.contact.update_pairs(state.x);
-    const double reference = reference_force(state, force);
-    settling.residual = residual(state, force).norm() / reference;
-    settling.penetration = 0.0;
-    for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
-      settling.penetration =
-          std::max(settling.penetration, -state.contact.gap(constraint, state.x));
+    Settling settling = judge(state, force, limits);
+    settling.iterations = iterations;
+    if (settling.converged) return settling;
+    if (round == options_.max_contact_updates) {
+      settling.reason = join_text("no equilibrium after ", iterations, " Newton steps: residual ",
+                                  settling.residual, " of the joint force (limit ", limits.residual,
+                                  "), net force ", settling.imbalance, " (limit ", limits.imbalance,
+                                  "), penetration ", settling.penetration, " mm (limit ",
+                                  limits.penetration, " mm)", reason.empty() ? "" : "; " + reason);
+      return settling;
     }
-    settling.converged = settling.residual <= tolerance && settling.penetration <= overlap;
-    if (settling.converged || round == options_.max_contact_updates) break;
-    if (settling.residual <= 10.0 * tolerance && settling.penetration > overlap) {
-      state.contact.update_multipliers(state.x);
+    // multipliers wait until the pairs have nearly found their place
+    if (settling.residual <= 10.0 * limits.residual && settling.penetration > limits.penetration) {
+      state.contact.update_multipliers(state.x, limits.penetration);
     }
-    const SolveReport newton = relax(state, force, 0.3 * tolerance, reference);
-    settling.iterations += newton.iterations;
-    settling.reason = newton.reason;
+    const double nearer = std::min(1.0, limits.imbalance / settling.imbalance);
+    const double tolerance = 0.3 * limits.residual * std::max(nearer, kFinestNewton);
+    const SolveReport newton = relax(state, force, tolerance, reference_force(state, force));
+    iterations += newton.iterations;
+    reason = newton.reason;
     const double way = state.x.segment<3>(3 * system_.translation()).norm();
     if (!(way <= options_.max_translation)) {
       settling.reason =
@@ -196,15 +242,6 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
       return settling;
     }
   }
-  if (settling.converged) {
-    settling.reason.clear();
-  } else {
-    settling.reason = join_text(
-        "no equilibrium after ", settling.iterations, " Newton steps: residual ", settling.residual,
-        " of the joint force (limit ", tolerance, "), penetration ", settling.penetration,
-        " mm (limit ", overlap, " mm)", settling.reason.empty() ? "" : "; " + settling.reason);
-  }
-  return settling;
 }
 
 }  // namespace coxa::joint

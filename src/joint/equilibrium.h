@@ -17,11 +17,15 @@ struct HipState {
   collide::SurfaceContact contact;
 };
 
+/// Forces on all particles at a state, held ones included, without the joint force: N.
+VecX node_forces(const HipSystem& system, const HipState& state);
+
 /// How well a state is settled, and what it cost.
 struct Settling {
   bool converged = false;
   std::string reason;
   double residual = 0.0;     ///< of the free nodes, relative to the joint force
+  double imbalance = 0.0;    ///< net force left on a cartilage, relative to the joint force
   double penetration = 0.0;  ///< mm
   int iterations = 0;        ///< Newton steps
 };
@@ -49,6 +53,11 @@ class Equilibrium {
   double reference_force(const HipState& state, const Vec3& force) const;
 
  private:
+  struct Limits {
+    double residual, imbalance, penetration;
+  };
+  Settling judge(const HipState& state, const Vec3& force, const Limits& limits) const;
+  double net_force(const VecX& residual) const;
   SolveReport relax(HipState& state, const Vec3& force, double tolerance, double reference);
   std::string touch(HipState& state, const Vec3& direction) const;
 

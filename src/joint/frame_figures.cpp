@@ -142,8 +142,8 @@ void fill_sectors(std::array<SectorFigures, N>& sectors, const JointModel& model
 
 }  // namespace
 
-Reactions bone_reactions(const HipSystem& system, const VecX& x) {
-  const VecX force = dynamics::total_force(system.elastic(), x, VecX::Zero(x.size()));
+Reactions bone_reactions(const HipSystem& system, const HipState& state) {
+  const VecX force = node_forces(system, state);
   Reactions reactions;
   for (const Index i : system.socket_nodes()) reactions.socket += force.segment<3>(3 * i);
   for (const Index i : system.femur_nodes()) reactions.femur += force.segment<3>(3 * i);
@@ -160,14 +160,15 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
   fill_head_nodes(frame, model, system, state);
 
   BalanceFigures& balance = frame.balance;
-  const Reactions reactions = bone_reactions(system, state.x);
+  const Reactions reactions = bone_reactions(system, state);
   balance.socket_reaction = reactions.socket;
   balance.femur_reaction = reactions.femur;
   balance.elastic_energy = dynamics::total_energy(system.elastic(), state.x);
   for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
     const double gap = std::min(0.0, state.contact.gap(constraint, state.x));
     frame.contact.penetration = std::max(frame.contact.penetration, -gap);
-    balance.contact_energy += 0.5 * state.contact.stiffness() * constraint.area * gap * gap;
+    balance.contact_energy +=
+        0.5 * state.contact.stiffness(constraint) * constraint.area * gap * gap;
   }
   if (force.norm() > 0.0) {
     balance.reaction_error = (reactions.socket + reactions.femur).norm() / force.norm();

@@ -16,10 +16,11 @@ double pressure_percentile(const std::vector<collide::ContactSample>& samples, d
 /// Greatest mean pressure over a disc of `area` mm² around any pressed sample, MPa.
 double patch_peak(const std::vector<collide::ContactSample>& samples, double area);
 
-/// Forces of the elastic bodies on their held bone-side nodes, summed: socket and femur, N.
+/// Forces on the held bone-side nodes, elastic and of contact right on them, summed: socket and
+/// femur, N.
 struct Reactions {
   Vec3 socket = Vec3::Zero(), femur = Vec3::Zero();
 };
-Reactions bone_reactions(const HipSystem& system, const VecX& x);
+Reactions bone_reactions(const HipSystem& system, const HipState& state);
 
 }  // namespace coxa::joint

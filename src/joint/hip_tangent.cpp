@@ -56,8 +56,8 @@ void HipTangent::update_contact(const collide::SurfaceContact& contact, const Ve
   row_slope_.clear();
   for (const collide::ContactConstraint& constraint : contact.constraints()) {
     if (contact.pressure(constraint, x) == 0.0) continue;
-    ContactRow row{contact.stiffness() * constraint.area, static_cast<Index>(row_particle_.size()),
-                   0};
+    ContactRow row{contact.stiffness(constraint) * constraint.area,
+                   static_cast<Index>(row_particle_.size()), 0};
     for (Index k = constraint.first; k < constraint.last; ++k) {
       const auto particle =
           static_cast<std::size_t>(contact.stencil_particles()[static_cast<std::size_t>(k)]);

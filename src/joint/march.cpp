@@ -1,6 +1,5 @@
 #include "march.h"
 
-#include <coxa/dynamics/system.h>
 #include <coxa/geom/fits.h>
 
 #include <algorithm>
@@ -18,9 +17,7 @@ double March::sub_step(const BonePose& from, const BonePose& to) const {
 
 /// Mean of the forces at both ends times the way of every held femoral node (trapezium rule).
 double March::work_between(const HipState& before, const HipState& after) const {
-  const VecX zero = VecX::Zero(before.x.size());
-  const VecX first = dynamics::total_force(system_.elastic(), before.x, zero);
-  const VecX last = dynamics::total_force(system_.elastic(), after.x, zero);
+  const VecX first = node_forces(system_, before), last = node_forces(system_, after);
   const Vec3 shift = after.x.segment<3>(3 * system_.translation()) -
                      before.x.segment<3>(3 * system_.translation());
   double work = 0.0;

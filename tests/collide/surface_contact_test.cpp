@@ -186,6 +186,26 @@ TEST(SurfaceContact, MultipliersCarryTheLoadAtZeroPenetration) {
   contact.clear_multipliers();
   EXPECT_EQ(contact.pressure(contact.constraints().front(), x), 0.0);
 }
+TEST(SurfaceContact, OverlapThatDoesNotHalveStiffensItsConstraint) {
+  const TriMesh plate = test::turned_over(test::plate(-0.02, 5.0, 2)),
+                floor = test::plate(0.0, 5.0, 3);
+  SurfaceContact contact(make_particle_surface(plate.triangles), floor, {});
+  VecX x = test::stacked(plate);
+  contact.update_pairs(x);
+  const auto stiffness = [&] { return contact.stiffness(contact.constraints().front()); };
+  contact.update_multipliers(x, 0.01);
+  EXPECT_EQ(stiffness(), 100.0);  // nothing to compare with yet
+  for (Index i = 2; i < x.size(); i += 3) x[i] = -0.008;
+  contact.update_multipliers(x, 0.01);
+  EXPECT_EQ(stiffness(), 100.0);  // has halved
+  contact.update_multipliers(x, 0.01);
+  EXPECT_EQ(stiffness(), 100.0);  // within the tolerance
+  contact.update_multipliers(x, 0.005);
+  EXPECT_EQ(stiffness(), 400.0);
+  contact.clear_stiffening();
+  EXPECT_EQ(stiffness(), 100.0);
+  EXPECT_GT(contact.pressure(contact.constraints().front(), x), 2.0);
+}
 TEST(SurfaceContact, CurvatureMakesFacetsTheSphereTheyComeFrom) {
   // a fine sphere inside a coarse one of the same radius: their facets are up to 0.12 mm apart, the
   // patches not

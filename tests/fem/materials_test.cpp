@@ -177,6 +177,22 @@ TEST(StVenantKirchhoff, FollowsItsUniaxialCurveToItsLimitPoint) {
   EXPECT_NEAR(law->first_piola(Vec3(0.7, 1, 1).asDiagonal())(0, 0),
               0.5 * (lame.lambda + 2.0 * lame.mu) * 0.7 * (0.49 - 1.0), 1e-12);
 }
+TEST(Corotational, HasTheStressOfItsSingularValuesThroughFlatAndInverted) {
+  // P = R (2 mu (S - I) + lambda tr(S - I) I) with R = U V^T and S = V diag(stretch) V^T
+  Rng rng(5);
+  const auto law = make_corotational(kCartilage);
+  for (int k = 0; k < 300; ++k) {
+    const Mat3 F = some_deformation(rng, 0.01 * k);
+    const SignedSvd svd = signed_svd(F);
+    const Vec3 e = svd.stretch - Vec3::Ones();
+    const Vec3 p = 2.0 * kCartilage.mu * e + kCartilage.lambda * e.sum() * Vec3::Ones();
+    const Mat3 expected = svd.U * p.asDiagonal() * svd.V.transpose();
+    EXPECT_LT((law->first_piola(F) - expected).norm(), 1e-10 * (1.0 + expected.norm()));
+    const double energy =
+        kCartilage.mu * e.squaredNorm() + 0.5 * kCartilage.lambda * e.sum() * e.sum();
+    EXPECT_NEAR(law->energy_density(F), energy, 1e-11 * (1.0 + energy));
+  }
+}
 TEST(Corotational, PushesBackFromInversion) {
   const auto law = make_corotational(kCartilage);
   for (const double l : {0.2, 1e-9, -0.3, -0.9}) {

@@ -98,8 +98,14 @@ class SurfaceContact : public dynamics::Force {
   /// Takes the surfaces as smooth with the curvature they have at x: from now on samples and the
   /// points they face lie on quadratic patches through the vertices instead of on flat triangles.
   void update_curvature(const VecX& x);
-  /// Sets every multiplier to the pressure at x, and returns the largest penetration, mm.
-  double update_multipliers(const VecX& x);
+  /// Sets every multiplier to the pressure at x, and returns the largest penetration, mm. Where a
+  /// penetration above `tolerance` (mm) has not halved since the last call, the constraint becomes
+  /// four times as stiff (Bertsekas 1982), up to 1024 times: multipliers alone converge slowly
+  /// where the bodies are stiffer than the penalty.
+  double update_multipliers(const VecX& x, double tolerance = kInfinity);
+  /// Gives every constraint the common stiffness again; multipliers stay.
+  void clear_stiffening();
+  /// Forgets multipliers and stiffening.
   void clear_multipliers();
   void update_stiffness(double stiffness);
 
@@ -112,6 +118,10 @@ class SurfaceContact : public dynamics::Force {
   double gap(const ContactConstraint& constraint, const VecX& x) const;  ///< mm, beyond minimum_gap
   double pressure(const ContactConstraint& constraint, const VecX& x) const;  ///< MPa
   double stiffness() const { return options_.stiffness; }
+  /// Of one constraint, MPa/mm: its stiffening included.
+  double stiffness(const ContactConstraint& constraint) const {
+    return options_.stiffness * stiffening_[static_cast<std::size_t>(constraint.owner)];
+  }
   const std::vector<ContactConstraint>& constraints() const { return constraints_; }
   const std::vector<Index>& stencil_particles() const { return stencil_particles_; }
   const std::vector<Vec3>& stencil_vectors() const { return stencil_vectors_; }
@@ -127,6 +137,7 @@ class SurfaceContact : public dynamics::Force {
   void prepare_other(const VecX& x);
   void append_entries(const ContactPair& pair, double share, Entries& entries) const;
   void append_constraint(ContactConstraint constraint, Entries& entries);
+  void forget(std::size_t owner);
   void make_pointwise_constraints();
   void make_nodal_constraints();
   std::vector<std::vector<Index>> slave_groups() const;
@@ -140,6 +151,8 @@ class SurfaceContact : public dynamics::Force {
   std::vector<ContactSample> samples_;    ///< triangle and barycentric; areas as of the last update
   Points slave_bulge_, other_bulge_;      ///< per triangle and edge, mm; empty: flat facets
   std::vector<double> multiplier_;        ///< per owner, MPa
+  std::vector<double> stiffening_;        ///< per owner, >= 1
+  std::vector<double> overlap_;           ///< per owner, mm, at the last update of multipliers
   std::optional<TriangleTree> tree_;
   Eigen::Matrix<bool, Eigen::Dynamic, 3, Eigen::RowMajor> boundary_edge_;
   std::vector<bool> boundary_vertex_;
