@@ -2,9 +2,9 @@
 #include <coxa/io/motion_files.h>
 #include <coxa/io/track_model.h>
 #include <coxa/pipeline/motion_stage.h>
-#include <coxa/pipeline/record.h>
+#include <coxa/pipeline/stage.h>
 
-#include <chrono>
+#include <cmath>
 
 #include "commands.h"
 
@@ -40,27 +40,24 @@ void add_figures(const motion::TrackedRecording& tracked, pipeline::Record& reco
 }
 
 void run_track(const TrackArguments& arguments, Context& context) {
-  const auto start = std::chrono::steady_clock::now();
   const Monitor monitor = context.monitor();
-  pipeline::Record record;
-  record.verb = "track";
-  record.inputs["markers"] = io::sha256_of_path(arguments.markers);
-  const fs::path model = model_file(arguments);
-  if (!model.empty()) record.inputs["model"] = io::sha256_of_path(model);
-  const auto tracked = pipeline::track_markers(arguments.markers, model, {}, monitor);
-  const fs::path out = arguments.out, stem = out.parent_path() / io::stem_of(out);
-  if (io::extension_of(out) == ".mot") {
-    io::write_opensim_motion(out, tracked.result.motion, tracked.model.side);
-  } else {
-    io::write_motion(out, tracked.result.motion);
-  }
-  io::write_residuals(stem.string() + "_residuals.csv", tracked.result);
-  add_figures(tracked, record);
-  for (const std::string& text : record.warnings) monitor.warn(text);
-  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  record.peak_memory_mb = pipeline::peak_memory_mb();
-  pipeline::write_record(stem.string() + ".json", record);
-  context.print_result(out.string(), record);
+  pipeline::Record wanted;
+  wanted.verb = "track";
+  wanted.inputs["markers"] = io::sha256_of_path(arguments.markers);
+  const fs::path model = model_file(arguments), out = arguments.out;
+  if (!model.empty()) wanted.inputs["model"] = io::sha256_of_path(model);
+  const auto body = [&](const fs::path& partial, pipeline::Record& record) {
+    const auto tracked = pipeline::track_markers(arguments.markers, model, {}, monitor);
+    if (io::extension_of(out) == ".mot") {
+      io::write_opensim_motion(partial / out.filename(), tracked.result.motion, tracked.model.side);
+    } else {
+      io::write_motion(partial / out.filename(), tracked.result.motion);
+    }
+    io::write_residuals(partial / (io::stem_of(out) + "_residuals.csv"), tracked.result);
+    add_figures(tracked, record);
+    for (const std::string& text : record.warnings) monitor.warn(text);
+  };
+  context.print_result(out.string(), pipeline::run_file(out, wanted, monitor, body));
 }
 
 }  // namespace

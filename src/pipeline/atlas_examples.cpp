@@ -168,9 +168,12 @@ void check_exclusions(const std::vector<ScannedHip>& hips, const AtlasExampleOpt
 std::vector<shape::HipExample> load_atlas_examples(const fs::path& data,
                                                    const AtlasExampleOptions& options,
                                                    const Monitor& monitor) {
+  monitor.progress("examples", 0.0);
+  monitor.check_cancelled();
   std::vector<ScannedHip> hips = scan_set(data / "libhip", "libhip");
   for (ScannedHip& hip : scan_set(data / "visible_human", "visible_human"))
     hips.push_back(std::move(hip));
+  monitor.check_cancelled();
   for (ScannedHip& hip : scan_label_maps(data / "labels" / "pelvic_ref"))
     hips.push_back(std::move(hip));
   if (hips.empty() && options.own.empty()) {

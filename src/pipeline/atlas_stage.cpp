@@ -1,9 +1,7 @@
 #include <coxa/pipeline/atlas_stage.h>
 
 #include <coxa/io/atlas_file.h>
-#include <coxa/io/files.h>
-
-#include <chrono>
+#include <coxa/pipeline/stage.h>
 
 namespace coxa::pipeline {
 namespace fs = std::filesystem;
@@ -27,32 +25,31 @@ std::string joined(const std::vector<std::string>& words) {
 }  // namespace
 
 Record build_atlas_file(const AtlasRequest& request, const fs::path& out, const Monitor& monitor) {
-  const auto start = std::chrono::steady_clock::now();
-  Record record;
-  record.verb = "atlas";
-  record.options = {{"exclude", joined(request.examples.exclude)},
+  Record wanted;
+  wanted.verb = "atlas";
+  wanted.options = {{"exclude", joined(request.examples.exclude)},
                     {"exclude_structures", joined(request.examples.exclude_structures)},
                     {"contrasts", joined(request.profiles.contrasts)},
                     {"profile_hips", std::int64_t{request.profiles.n_hips}},
                     {"seed", static_cast<std::int64_t>(request.profiles.seed)}};
-  const auto examples = load_atlas_examples(request.data, request.examples, monitor);
-  shape::Atlas atlas = shape::build_atlas(examples, {}, monitor);
-  update_atlas_profiles(atlas, request.profiles, monitor);
-  atlas.attribution = kAttribution;
-  io::write_atlas(out, atlas);
-  record.figures["subjects"] = static_cast<std::int64_t>(atlas.subjects.size());
-  for (const shape::StructureModel& model : atlas.structures) {
-    record.figures[model.name + "_vertices"] =
-        std::int64_t{model.hierarchy.levels.back().n_vertices()};
-    record.figures[model.name + "_modes"] =
-        static_cast<std::int64_t>(model.shape.deviations.size());
-    record.figures[model.name + "_leave_one_out_mm"] = model.leave_one_out_error;
-  }
-  record.figures["size_mb"] = static_cast<double>(fs::file_size(out)) / 1e6;
-  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  record.peak_memory_mb = peak_memory_mb();
-  write_record(out.parent_path() / (io::stem_of(out) + ".json"), record);
-  return record;
+  const auto body = [&](const fs::path& partial, Record& record) {
+    const auto examples = load_atlas_examples(request.data, request.examples, monitor);
+    shape::Atlas atlas = shape::build_atlas(examples, {}, monitor);
+    update_atlas_profiles(atlas, request.profiles, monitor);
+    atlas.attribution = kAttribution;
+    const fs::path file = partial / out.filename();
+    io::write_atlas(file, atlas);
+    record.figures["subjects"] = static_cast<std::int64_t>(atlas.subjects.size());
+    for (const shape::StructureModel& model : atlas.structures) {
+      record.figures[model.name + "_vertices"] =
+          std::int64_t{model.hierarchy.levels.back().n_vertices()};
+      record.figures[model.name + "_modes"] =
+          static_cast<std::int64_t>(model.shape.deviations.size());
+      record.figures[model.name + "_leave_one_out_mm"] = model.leave_one_out_error;
+    }
+    record.figures["size_mb"] = static_cast<double>(fs::file_size(file)) / 1e6;
+  };
+  return run_file(out, wanted, monitor, body);
 }
 
 }  // namespace coxa::pipeline

@@ -4,6 +4,7 @@
 #include <coxa/io/files.h>
 #include <coxa/io/surfaces.h>
 #include <coxa/io/tets.h>
+#include <coxa/mesh/rebuild.h>
 #include <coxa/mesh/remesh.h>
 #include <coxa/mesh/repair.h>
 #include <coxa/mesh/surface_distance.h>
@@ -14,11 +15,13 @@
 #include <coxa/pipeline/segment_stage.h>
 
 #include <algorithm>
-#include <chrono>
 
 namespace coxa::pipeline {
 namespace fs = std::filesystem;
 namespace {
+
+// grid and edge length of a surface made anew, mm: a fraction of cartilage's thickness
+constexpr double kRebuildSpacing = 0.3, kRebuildEdge = 0.7;
 
 /// Places where a closed surface cuts itself are evened out first, which keeps its triangles; the
 /// rest is repaired.
@@ -33,12 +36,22 @@ TriMesh made_valid(TriMesh surface, const ValidityReport& before, const std::str
       surface.points = points;
     }
   }
+  std::string refusal;
   try {
     const Repaired repaired = repair(surface);
     for (const std::string& line : repaired.report.lines()) changes.push_back(line);
     return repaired.mesh;
   } catch (const Error& refused) {
-    fail(refused.code(), name, ": ", refused.what());
+    refusal = refused.what();
+  }
+  try {
+    const Rebuilt rebuilt =
+        rebuild(surface, {.spacing = kRebuildSpacing, .target_edge = kRebuildEdge});
+    changes.push_back(join_text("made anew around what it encloses, since ", refusal, "; at most ",
+                                rebuilt.largest_move, " mm from where it was"));
+    return rebuilt.mesh;
+  } catch (const Error& error) {
+    fail(error.code(), name, ": ", refusal, "; ", error.what());
   }
 }
 
@@ -59,8 +72,23 @@ TriMesh usable_surface(const TriMesh& surface, const std::string& name, Record& 
 // edge lengths, mm, tried when a surface as it is cannot be filled: even triangles about half as
 // long as cartilage is thick, longer ones where that fails, since they even out a ragged rim
 constexpr double kRemeshEdges[] = {0.7, 1.0, 1.4};
+// what is thinner than twice this cannot be filled well and bears nothing, mm
+constexpr double kRimRadius = 0.2;
+// evens ragged rims and moves a wall of one millimetre by a hundredth, mm
+constexpr double kRimSmoothing = 0.3;
 
-/// The surface filled as it is, or else with its triangles made even.
+/// A surface in place of one that could not be filled; throws where it cannot be made.
+TriMesh replacement(const TriMesh& surface, double edge, bool anew) {
+  TriMesh even = anew ? rebuild(surface, {.spacing = kRebuildSpacing,
+                                          .opening = kRimRadius,.smoothing = kRimSmoothing,
+                                          .target_edge = edge})
+                            .mesh
+                      : remesh(surface, {.target_edge = edge});
+  if (!update_unfolded(even)) fail(ErrorCode::bad_mesh, "the surface still cuts itself");
+  return even;
+}
+
+/// The surface filled as it is, or else with its triangles made even, or else made anew.
 meshing::MeshingResult filled(const TriMesh& surface, const meshing::MeshingOptions& options,
                               const std::string& name, Record& record, const Monitor& monitor) {
   std::string why;
@@ -70,19 +98,22 @@ meshing::MeshingResult filled(const TriMesh& surface, const meshing::MeshingOpti
     if (error.code() != ErrorCode::below_quality && error.code() != ErrorCode::bad_mesh) throw;
     why = error.what();
   }
-  for (const double edge : kRemeshEdges) {
-    TriMesh even = remesh(surface, {.target_edge = edge});
-    if (!update_unfolded(even)) continue;
-    try {
-      meshing::MeshingResult result = meshing::mesh_surface(even, options, monitor);
-      const SurfaceDistance moved = surface_distance(even, surface);
-      record.warnings.push_back(join_text(name, ": its triangles were made even (", edge,
-                                          " mm), which moved it by ", moved.assd,
-                                          " mm on average and ", moved.hd, " mm at most"));
-      monitor.warn(record.warnings.back());
-      return result;
-    } catch (const Error& error) {
-      if (error.code() == ErrorCode::cancelled) throw;
+  for (const bool anew : {false, true}) {
+    for (const double edge : kRemeshEdges) {
+      try {
+        const TriMesh even = replacement(surface, edge, anew);
+        meshing::MeshingResult result = meshing::mesh_surface(even, options, monitor);
+        const SurfaceDistance moved = surface_distance(even, surface);
+        record.warnings.push_back(join_text(
+            name, anew ? ": the surface was made anew (" : ": its triangles were made even (", edge,
+            " mm), which moved it by ", moved.assd, " mm on average and ", moved.hd,
+            " mm at most, since ", why));
+        monitor.warn(record.warnings.back());
+        return result;
+      } catch (const Error& error) {
+        if (error.code() == ErrorCode::cancelled) throw;
+        fprintf(stderr,"%d %g: %s\n",anew,edge,error.what());
+      }
     }
   }
   fail(ErrorCode::below_quality, name, ": ", why);
@@ -133,25 +164,22 @@ bool has_sheet_tags(const TetMesh& mesh) {
 }  // namespace
 
 Record run_mesh_file(const MeshRequest& request, const fs::path& out, const Monitor& monitor) {
-  const auto start = std::chrono::steady_clock::now();
-  Record record;
-  record.verb = "mesh";
-  add_options(request.options, record);
-  record.inputs["surface"] = io::sha256_of_path(request.surface);
-  const TriMesh surface =
-      usable_surface(io::read_surface(request.surface), request.surface.string(), record, monitor);
-  meshing::MeshingResult result =
-      filled(surface, request.options, request.surface.string(), record, monitor);
-  if (!request.bone.empty() && has_sheet_tags(result.mesh)) {
-    record.inputs["bone"] = io::sha256_of_path(request.bone);
-    meshing::update_bone_side(result.mesh, io::read_surface(request.bone));
-  }
-  add_figures(result, "", record);
-  io::write_tets(out, result.mesh);
-  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  record.peak_memory_mb = peak_memory_mb();
-  write_record(out.parent_path() / (io::stem_of(out) + ".json"), record);
-  return record;
+  Record wanted;
+  wanted.verb = "mesh";
+  add_options(request.options, wanted);
+  wanted.inputs["surface"] = io::sha256_of_path(request.surface);
+  if (!request.bone.empty()) wanted.inputs["bone"] = io::sha256_of_path(request.bone);
+  const std::string name = request.surface.string();
+  const auto body = [&](const fs::path& partial, Record& record) {
+    const TriMesh surface =
+        usable_surface(io::read_surface(request.surface), name, record, monitor);
+    meshing::MeshingResult result = filled(surface, request.options, name, record, monitor);
+    if (!request.bone.empty() && has_sheet_tags(result.mesh))
+      meshing::update_bone_side(result.mesh, io::read_surface(request.bone));
+    add_figures(result, "", record);
+    io::write_tets(partial / out.filename(), result.mesh);
+  };
+  return run_file(out, wanted, monitor, body);
 }
 
 Record run_mesh_stage(const fs::path& segment_folder, const meshing::MeshingOptions& options,

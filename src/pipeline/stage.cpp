@@ -1,9 +1,13 @@
 #include <coxa/pipeline/stage.h>
 
 #include <coxa/core/error.h>
+#include <coxa/io/files.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <system_error>
+#include <vector>
 
 namespace coxa::pipeline {
 namespace fs = std::filesystem;
@@ -50,6 +54,32 @@ void put_in_place(const fs::path& partial, const fs::path& folder) {
     fail(ErrorCode::bad_file, "cannot put the result at ", folder.string(), ": ", error.message());
 }
 
+/// Runs the body in an empty folder and completes the record with time and memory.
+void fill(const fs::path& partial, Record& record, const Monitor& monitor,
+          const std::function<void(const fs::path&, Record&)>& body) {
+  const auto start = std::chrono::steady_clock::now();
+  body(partial, record);
+  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  record.peak_memory_mb = peak_memory_mb();
+  monitor.check_cancelled();
+}
+
+/// Moves every file of `partial` into `folder`; files already moved are taken back when one fails.
+void move_files(const fs::path& partial, const fs::path& folder) {
+  std::vector<fs::path> names;
+  for (const auto& entry : fs::directory_iterator(partial))
+    names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::error_code error, ignored;
+    fs::rename(partial / names[i], folder / names[i], error);
+    if (!error) continue;
+    for (std::size_t k = 0; k < i; ++k) fs::remove(folder / names[k], ignored);
+    fail(ErrorCode::bad_file, "cannot put ", (folder / names[i]).string(),
+         " in place: ", error.message());
+  }
+}
+
 }  // namespace
 
 Record run_stage(const fs::path& folder, Record wanted, Reuse reuse, const Monitor& monitor,
@@ -64,12 +94,23 @@ Record run_stage(const fs::path& folder, Record wanted, Reuse reuse, const Monit
   make_empty_folder(partial);
   const RemoveOnExit cleanup(partial);
 
-  const auto start = std::chrono::steady_clock::now();
-  body(partial, wanted);
-  wanted.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  wanted.peak_memory_mb = peak_memory_mb();
+  fill(partial, wanted, monitor, body);
   write_record(partial / file, wanted);
   put_in_place(partial, folder);
+  monitor.progress(wanted.verb, 1.0);
+  return wanted;
+}
+
+Record run_file(const fs::path& out, Record wanted, const Monitor& monitor,
+                const std::function<void(const fs::path&, Record&)>& body) {
+  monitor.check_cancelled();
+  const fs::path folder = out.has_parent_path() ? out.parent_path() : fs::path(".");
+  const fs::path partial = folder / join_text('.', io::stem_of(out), ".partial-", ::getpid());
+  make_empty_folder(partial);
+  const RemoveOnExit cleanup(partial);
+  fill(partial, wanted, monitor, body);
+  write_record(partial / (io::stem_of(out) + ".json"), wanted);
+  move_files(partial, folder);
   monitor.progress(wanted.verb, 1.0);
   return wanted;
 }
