@@ -73,6 +73,11 @@ void Context::say(const std::string& line) {
   if (!common.quiet && !common.json) fmt::print("{}\n", line);
 }
 
+void Context::announce(const std::string& address, const std::string& line) {
+  fmt::print("{}\n", common.json ? nlohmann::json{{"address", address}}.dump() : line);
+  std::fflush(stdout);
+}
+
 int Context::print_error(std::string_view code_name, const std::string& text, int exit_code) {
   if (progress_) progress_->finish_line();
   if (common.json) {

@@ -33,6 +33,8 @@ class Context {
   void print_result(const std::string& where, const pipeline::Record& record);
   /// One line for people; nothing with --quiet or --json.
   void say(const std::string& line);
+  /// Where something can be reached, printed at once: {"address": …} with --json.
+  void announce(const std::string& address, const std::string& line);
   /// Prints an error and returns the exit code.
   int print_error(std::string_view code_name, const std::string& text, int exit_code);
 

@@ -29,6 +29,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_phantom(app, context);
   add_atlas(app, context);
   add_check(app, context);
+  add_view(app, context);
 }
 
 int usage_error(const CLI::App& app, const CLI::ParseError& error, Context& context) {

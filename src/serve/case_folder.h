@@ -1,0 +1,70 @@
+#pragma once
+
+#include <coxa/core/monitor.h>
+#include <coxa/pipeline/joint_stage.h>
+#include <coxa/pipeline/motion_stage.h>
+#include <coxa/pipeline/subject.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "body_surface.h"
+
+namespace coxa::serve {
+
+/// What a segmentation needs of the subject, from its file or, without one, from the one image that
+/// lies in the folder.
+struct CaseInput {
+  std::optional<pipeline::Subject> subject;
+  std::vector<pipeline::ImageEntry> images;
+  std::optional<Side> side;
+  std::string fault;  ///< why there is no image; empty when there is one
+};
+
+/// One of the two cartilages as meshed, and its boundary.
+struct Body {
+  std::string name;  ///< acetabular, femoral
+  TetMesh mesh;
+  BodySurface surface;
+};
+
+/// A subject's folder, as far as it has got: what is there is read when asked for.
+class CaseFolder {
+ public:
+  /// @throws Error bad_file if there is no such folder
+  explicit CaseFolder(const std::filesystem::path& folder);
+
+  const std::filesystem::path& folder() const { return folder_; }
+  /// What the folder holds, for the browser's first look.
+  nlohmann::json overview() const;
+  CaseInput input() const;
+  /// Where landmarks are read from: the folder's own, else the subject file's; empty: nowhere.
+  std::filesystem::path landmarks_file() const;
+
+  // bundles, as bytes; @throws Error bad_file or bad_input where there is no such thing
+  std::string surface(const std::string& structure) const;
+  std::string body(const std::string& name) const;
+  std::string frame(Index index) const;
+  std::string image() const;
+
+  bool has_meshes() const;
+  Body read_body(const std::string& name) const;
+  /// The hip as it would be simulated, for the live examination.
+  struct Hip {
+    joint::JointModel model;
+    joint::LoadCase load;
+  };
+  Hip read_hip() const;
+
+ private:
+  pipeline::JointRequest joint_request() const;
+  Side side() const;
+  nlohmann::json clock() const;
+  RigidTransform unsolved_pose(Index index) const;
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace coxa::serve
