@@ -73,14 +73,15 @@ TriMesh usable_surface(const TriMesh& surface, const std::string& name, Record& 
 // long as cartilage is thick, longer ones where that fails, since they even out a ragged rim
 constexpr double kRemeshEdges[] = {0.7, 1.0, 1.4};
 // what is thinner than twice this cannot be filled well and bears nothing, mm
-constexpr double kRimRadius = 0.2;
+constexpr double kRimRadius = 0.25;
 // evens ragged rims and moves a wall of one millimetre by a hundredth, mm
 constexpr double kRimSmoothing = 0.3;
 
 /// A surface in place of one that could not be filled; throws where it cannot be made.
 TriMesh replacement(const TriMesh& surface, double edge, bool anew) {
   TriMesh even = anew ? rebuild(surface, {.spacing = kRebuildSpacing,
-                                          .opening = kRimRadius,.smoothing = kRimSmoothing,
+                                          .opening = kRimRadius,
+                                          .smoothing = kRimSmoothing,
                                           .target_edge = edge})
                             .mesh
                       : remesh(surface, {.target_edge = edge});
@@ -112,7 +113,6 @@ meshing::MeshingResult filled(const TriMesh& surface, const meshing::MeshingOpti
         return result;
       } catch (const Error& error) {
         if (error.code() == ErrorCode::cancelled) throw;
-        fprintf(stderr,"%d %g: %s\n",anew,edge,error.what());
       }
     }
   }

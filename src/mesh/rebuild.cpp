@@ -1,0 +1,191 @@
+#include <coxa/mesh/rebuild.h>
+
+#include <coxa/core/error.h>
+#include <coxa/core/parallel.h>
+#include <coxa/geom/triangle_tree.h>
+#include <coxa/mesh/iso_surface.h>
+#include <coxa/mesh/measures.h>
+#include <coxa/mesh/remesh.h>
+#include <coxa/mesh/topology.h>
+#include <coxa/mesh/unfold.h>
+#include <coxa/mesh/validate.h>
+#include <coxa/mesh/voxelize.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace coxa {
+namespace {
+
+constexpr double kBand = 2.0;  // grid spacings around the surface where distances are computed
+// least distance in grid spacings: a sample on an inner wall is inside all the same
+constexpr double kLeast = 0.05;
+constexpr std::int64_t kMaxSamples = 200'000'000;
+
+struct Grid {
+  std::array<Index, 3> size{};
+  Vec3 origin = Vec3::Zero();
+  double spacing = 1.0;
+
+  Grid(const Points& points, double h) : spacing(h) {
+    const Bounds box = bounds(points);
+    const Vec3 cells = ((box.high - box.low) / h).array() + 2.0 * (kBand + 2.0);
+    require(cells.prod() < static_cast<double>(kMaxSamples), "rebuild: a spacing of ", h,
+            " mm gives too many samples");
+    // half a cell off the corner: rows then rarely run along flat faces
+    origin = box.low.array() - (kBand + 1.5) * h;
+    for (int k = 0; k < 3; ++k)
+      size[static_cast<std::size_t>(k)] = static_cast<Index>(std::ceil(cells[k]));
+  }
+  std::size_t offset(Index i, Index j, Index k) const {
+    return static_cast<std::size_t>(i) +
+           static_cast<std::size_t>(size[0]) *
+               (static_cast<std::size_t>(j) +
+                static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(k));
+  }
+  std::size_t n() const { return offset(0, 0, size[2]); }
+};
+
+// how many of the six axis directions see each sample inside
+std::vector<std::uint8_t> votes(const TriMesh& mesh, const Grid& grid) {
+  std::vector<std::uint8_t> sum(grid.n(), 0);
+  for (int axis = 0; axis < 3; ++axis)
+    for (bool reversed : {false, true}) {
+      // grid axes turned cyclically so that rows run along `axis`
+      const int a = axis, b = (axis + 1) % 3, c = (axis + 2) % 3;
+      const auto at = [&](int k) { return grid.size[static_cast<std::size_t>(k)]; };
+      const auto index = [&](const Vec3& p) {
+        const Vec3 q = (p - grid.origin) / grid.spacing;
+        return Vec3(reversed ? at(a) - 1 - q[a] : q[a], q[b], q[c]);
+      };
+      const auto inside = inside_samples(mesh, {at(a), at(b), at(c)}, index);
+      parallel_for(at(c), [&](Index z) {
+        for (Index y = 0; y < at(b); ++y)
+          for (Index x = 0; x < at(a); ++x) {
+            std::array<Index, 3> place{};
+            place[static_cast<std::size_t>(a)] = reversed ? at(a) - 1 - x : x;
+            place[static_cast<std::size_t>(b)] = y;
+            place[static_cast<std::size_t>(c)] = z;
+            const std::size_t row = static_cast<std::size_t>(y) +
+                                    static_cast<std::size_t>(at(b)) * static_cast<std::size_t>(z);
+            sum[grid.offset(place[0], place[1], place[2])] +=
+                inside[static_cast<std::size_t>(x) + static_cast<std::size_t>(at(a)) * row];
+          }
+      });
+    }
+  return sum;
+}
+
+// distance from the surface, positive inside, cut off at the band plus reach
+std::vector<float> inner_distance(const TriMesh& mesh, const Grid& grid, double reach = 0.0) {
+  const std::vector<std::uint8_t> inside = votes(mesh, grid);
+  const TriangleTree tree(mesh.points, mesh.triangles);
+  const double band = kBand * grid.spacing + reach;
+  std::vector<float> values(grid.n());
+  parallel_for(grid.size[2], [&](Index k) {
+    for (Index j = 0; j < grid.size[1]; ++j)
+      for (Index i = 0; i < grid.size[0]; ++i) {
+        const auto near = tree.nearest_within(grid.origin + grid.spacing * Vec3(i, j, k), band);
+        const double distance =
+            near ? std::max(kLeast * grid.spacing, std::sqrt(near->squared_distance)) : band;
+        const std::size_t place = grid.offset(i, j, k);
+        values[place] = static_cast<float>(inside[place] > 3 ? distance : -distance);
+      }
+  });
+  return values;
+}
+
+/// Gaussian of the given standard deviation (samples) along one axis; values beyond the grid as at
+/// its border.
+std::vector<float> blurred(const std::vector<float>& values, const Grid& grid, int axis,
+                           double deviation) {
+  const Index reach = static_cast<Index>(std::ceil(3.0 * deviation));
+  std::vector<double> weight(static_cast<std::size_t>(2 * reach + 1));
+  double sum = 0.0;
+  for (Index d = -reach; d <= reach; ++d)
+    sum += weight[static_cast<std::size_t>(d + reach)] =
+        std::exp(-0.5 * d * d / (deviation * deviation));
+  std::vector<float> result(values.size());
+  parallel_for(grid.size[2], [&](Index k) {
+    for (Index j = 0; j < grid.size[1]; ++j)
+      for (Index i = 0; i < grid.size[0]; ++i) {
+        std::array<Index, 3> at{i, j, k};
+        const auto a = static_cast<std::size_t>(axis);
+        const Index middle = at[a];
+        double mean = 0.0;
+        for (Index d = -reach; d <= reach; ++d) {
+          at[a] = std::clamp<Index>(middle + d, 0, grid.size[a] - 1);
+          mean += weight[static_cast<std::size_t>(d + reach)] *
+                  static_cast<double>(values[grid.offset(at[0], at[1], at[2])]);
+        }
+        result[grid.offset(i, j, k)] = static_cast<float>(mean / sum);
+      }
+  });
+  return result;
+}
+
+TriMesh without_crumbs(const TriMesh& mesh) {
+  const std::vector<Index> piece = triangle_components(mesh);
+  const VecX areas = triangle_areas(mesh);
+  VecX piece_area = VecX::Zero(1 + *std::max_element(piece.begin(), piece.end()));
+  for (Index t = 0; t < mesh.n_triangles(); ++t)
+    piece_area[piece[static_cast<std::size_t>(t)]] += areas[t];
+  std::vector<Index> kept;
+  for (Index t = 0; t < mesh.n_triangles(); ++t)
+    if (piece_area[piece[static_cast<std::size_t>(t)]] >= 0.01 * piece_area.maxCoeff())
+      kept.push_back(t);
+  return sub_mesh(mesh, kept).mesh;
+}
+
+/// Distances from what remains when the surface is moved inwards and outwards again by `radius`
+/// (morphological opening).
+std::vector<float> opened(const std::vector<float>& values, const Grid& grid, double radius) {
+  if (std::none_of(values.begin(), values.end(), [&](float v) { return double{v} > radius; }))
+    fail(ErrorCode::bad_mesh, "nothing of the surface is thicker than ", 2.0 * radius, " mm");
+  const auto position = [&](const Vec3& index) { return Vec3(grid.origin + grid.spacing * index); };
+  const TriMesh core = without_crumbs(iso_surface(grid.size, values, radius, position));
+  std::vector<float> distance = inner_distance(core, grid, radius);
+  for (float& value : distance) value += static_cast<float>(radius);
+  return distance;
+}
+
+}  // namespace
+
+Rebuilt rebuild(const TriMesh& mesh, const RebuildOptions& options) {
+  require(options.spacing > 0.0, "rebuild: spacing must be positive, got ", options.spacing, " mm");
+  require(options.target_edge > 0.0, "rebuild: target_edge must be positive, got ",
+          options.target_edge, " mm");
+  require(options.opening >= 0.0, "rebuild: opening must not be negative, got ", options.opening,
+          " mm");
+  require(options.smoothing >= 0.0, "rebuild: smoothing must not be negative, got ",
+          options.smoothing, " mm");
+  require(options.max_move >= 0.0, "rebuild: max_move must not be negative, got ", options.max_move,
+          " mm");
+  const TriangleTree old_surface(mesh.points, mesh.triangles);  // refuses what cannot be read
+  const Grid grid(mesh.points, options.spacing);
+  std::vector<float> values = inner_distance(mesh, grid, options.opening);
+  if (options.opening > 0.0) values = opened(values, grid, options.opening);
+  for (int axis = 0; axis < 3 && options.smoothing > 0.0; ++axis)
+    values = blurred(values, grid, axis, options.smoothing / options.spacing);
+  if (std::none_of(values.begin(), values.end(), [](float v) { return v > 0.0f; }))
+    fail(ErrorCode::bad_mesh, "the surface encloses nothing that a grid of ", options.spacing,
+         " mm could see");
+  const auto position = [&](const Vec3& index) { return Vec3(grid.origin + grid.spacing * index); };
+  const TriMesh raw = without_crumbs(iso_surface(grid.size, values, 0.0, position));
+
+  Rebuilt result{remesh(raw, {.target_edge = options.target_edge})};
+  update_unfolded(result.mesh);  // long edges fold at sharp rims; what stays is found below
+  for (Index v = 0; v < result.mesh.n_vertices(); ++v) {
+    const Vec3 p = result.mesh.points.row(v);
+    const double move = std::sqrt(old_surface.nearest(p).squared_distance);
+    result.largest_move = std::max(result.largest_move, move);
+    if (move > options.max_move)
+      fail(ErrorCode::bad_mesh, "a new surface would lie ", move, " mm from the old one at (", p[0],
+           ", ", p[1], ", ", p[2], ") mm, more than ", options.max_move, " mm");
+  }
+  if (const ValidityReport report = validate(result.mesh); !report.valid())
+    fail(ErrorCode::bad_mesh, "rebuilding left faults: ", report.text());
+  return result;
+}
+
+}  // namespace coxa

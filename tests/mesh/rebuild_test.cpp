@@ -1,0 +1,92 @@
+#include <coxa/mesh/rebuild.h>
+#include <coxa/mesh/repair.h>
+
+#include <coxa/core/error.h>
+#include <coxa/core/parallel.h>
+#include <coxa/mesh/measures.h>
+#include <coxa/mesh/topology.h>
+#include <coxa/mesh/validate.h>
+#include <gtest/gtest.h>
+#include "support/shapes.h"
+
+namespace coxa {
+
+TriMesh together(TriMesh a, const TriMesh& b) {
+  const Index n = a.n_vertices(), m = a.n_triangles();
+  a.points.conservativeResize(n + b.n_vertices(), 3);
+  a.points.bottomRows(b.n_vertices()) = b.points;
+  a.triangles.conservativeResize(m + b.n_triangles(), 3);
+  a.triangles.bottomRows(b.n_triangles()) = b.triangles.array() + n;
+  return a;
+}
+
+TEST(Rebuild, JoinsOverlappingBodiesIntoOne) {
+  // two balls of 5 mm, 6 mm apart: the lens counted twice is known
+  const TriMesh two = together(test::icosphere(3, 5.0), test::icosphere(3, 5.0, Vec3(6, 0, 0)));
+  EXPECT_THROW(repair(two), Error);
+  const Rebuilt rebuilt = rebuild(two);
+  EXPECT_TRUE(validate(rebuilt.mesh).valid());
+  EXPECT_EQ(genus(rebuilt.mesh), 0);
+  const double lens = kPi * (4 * 5.0 + 6.0) * (2 * 5.0 - 6.0) * (2 * 5.0 - 6.0) / 12.0;
+  const double ball = volume(test::icosphere(3, 5.0));
+  EXPECT_NEAR(volume(rebuilt.mesh), 2 * ball - lens, 0.02 * ball);
+  EXPECT_LT(rebuilt.largest_move, 0.4);
+}
+TEST(Rebuild, ClosesHolesAndIgnoresTurnedTrianglesAndInnerWalls) {
+  TriMesh mesh = together(test::icosphere(3, 5.0), test::plate(0.0, 3.0, 4));
+  mesh.triangles.row(17).reverseInPlace();
+  mesh.triangles.row(40) = mesh.triangles.row(41);
+  const Rebuilt rebuilt = rebuild(mesh);
+  EXPECT_EQ(genus(rebuilt.mesh), 0);
+  EXPECT_NEAR(volume(rebuilt.mesh), volume(test::icosphere(3, 5.0)), 0.02 * 523.6);
+}
+TEST(Rebuild, FinerGridsComeNearer) {
+  const auto error = [](double spacing) {
+    return std::abs(volume(rebuild(test::box(Vec3(0, 0, 0), Vec3(6, 5, 4)),
+                                   {.spacing = spacing, .target_edge = 0.5})
+                               .mesh) -
+                    120.0);
+  };
+  EXPECT_LT(error(0.25), error(1.0));
+}
+TEST(Rebuild, SmoothingRoundsEdgesAndLeavesWallsWhereTheyAre) {
+  const TriMesh slab = test::box(Vec3(0, 0, 0), Vec3(8, 8, 1.2));
+  const auto extent = [&](double smoothing) {
+    const TriMesh mesh =
+        rebuild(slab, {.spacing = 0.2, .smoothing = smoothing, .target_edge = 0.4}).mesh;
+    double middle = -kInfinity, corner = -kInfinity;
+    for (const auto& p : mesh.points.rowwise()) {
+      if ((p.head<2>().transpose() - Eigen::Vector2d(4, 4)).norm() < 2.0)
+        middle = std::max(middle, p[2]);
+      corner = std::max(corner, p[0] + p[1] + p[2]);
+    }
+    return std::pair(middle, corner);
+  };
+  EXPECT_NEAR(extent(0.4).first, 1.2, 0.03);
+  EXPECT_LT(extent(0.4).second, extent(0.0).second - 0.3);
+}
+TEST(Rebuild, EdgeLengthIsAsAsked) {
+  EXPECT_NEAR(mean_edge_length(rebuild(test::icosphere(3, 5.0), {.target_edge = 1.5}).mesh), 1.5,
+              0.15);
+}
+TEST(Rebuild, RefusesSheetsAndLargeMoves) {
+  EXPECT_THROW(rebuild(test::plate(0.0)), Error);
+  // a bowl without its lid: the lid would be far from the old surface
+  TriMesh bowl = test::icosphere(3, 5.0);
+  std::vector<Index> kept;
+  for (Index t = 0; t < bowl.n_triangles(); ++t)
+    if (bowl.points(bowl.triangles(t, 0), 2) < 1.0) kept.push_back(t);
+  bowl = sub_mesh(bowl, kept).mesh;
+  EXPECT_THROW(rebuild(bowl), Error);
+  EXPECT_THROW(rebuild(test::box(), {.spacing = 0.0}), Error);
+  EXPECT_THROW(rebuild(test::box(), {.spacing = 1e-4}), Error);
+  EXPECT_THROW(rebuild(test::box(), {.target_edge = 0.0}), Error);
+  EXPECT_THROW(rebuild(test::box(), {.smoothing = -1.0}), Error);
+  EXPECT_THROW(rebuild(test::box(), {.max_move = -1.0}), Error);
+}
+TEST(Rebuild, IsBitIdenticalForOneAndEightThreads) {
+  const auto run = [] { return rebuild(test::torus(5.0, 1.5, 24, 12)).mesh.points; };
+  EXPECT_EQ(with_threads(1, run), with_threads(8, run));
+}
+
+}  // namespace coxa
