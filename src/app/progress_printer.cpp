@@ -58,6 +58,7 @@ void ProgressPrinter::update(std::string_view stage, double share) {
 }
 
 void ProgressPrinter::warn(std::string_view text) {
+  if (!told_.emplace(text).second) return;
   finish_line();
   if (style_ == ProgressStyle::json) {
     fmt::print("{}\n", nlohmann::json{{"warning", text}}.dump());

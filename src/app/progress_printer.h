@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,7 @@ class ProgressPrinter {
  public:
   explicit ProgressPrinter(ProgressStyle style) : style_(style) {}
   void update(std::string_view stage, double share);
+  /// Prints a warning, each text once.
   void warn(std::string_view text);
   /// Ends a terminal line in progress, so that what follows starts on its own line.
   void finish_line();
@@ -27,6 +29,7 @@ class ProgressPrinter {
   double first_share_ = 0.0, printed_share_ = -1.0;
   std::chrono::steady_clock::time_point stage_start_, printed_at_;
   bool line_open_ = false;
+  std::set<std::string, std::less<>> told_;
 };
 
 }  // namespace coxa::app

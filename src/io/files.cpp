@@ -56,7 +56,8 @@ class PartialFile {
 
  private:
   [[noreturn]] void give_up(int error) const {
-    fail(ErrorCode::bad_file, "cannot write ", path_.string(), ": ", system_reason(error));
+    fail(ErrorCode::bad_file, "cannot write ", path_.string(), ": ", system_reason(error),
+         error == ENOSPC || error == EDQUOT ? "; free some space or write elsewhere" : "");
   }
   fs::path path_, partial_;
   int descriptor_ = -1;

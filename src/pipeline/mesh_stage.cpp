@@ -23,15 +23,20 @@ namespace {
 // grid and edge length of a surface made anew, mm: a fraction of cartilage's thickness
 constexpr double kRebuildSpacing = 0.3, kRebuildEdge = 0.7;
 
+// a surface that must move farther than this, mm, about as thick as cartilage, is not evened out
+// but another surface
+constexpr double kLargestEvening = 2.0;
+
 /// Places where a closed surface cuts itself are evened out first, which keeps its triangles; the
 /// rest is repaired.
 TriMesh made_valid(TriMesh surface, const ValidityReport& before, const std::string& name,
                    std::vector<std::string>& changes) {
   if (before.has(FaultKind::self_intersection) && manifold_fault(surface).empty()) {
     const Points points = surface.points;
-    if (update_unfolded(surface)) {
-      changes.push_back(join_text("evened out where it cut itself, by at most ",
-                                  (surface.points - points).rowwise().norm().maxCoeff(), " mm"));
+    const bool unfolded = update_unfolded(surface);
+    const double moved = (surface.points - points).rowwise().norm().maxCoeff();
+    if (unfolded && moved <= kLargestEvening) {
+      changes.push_back(join_text("evened out where it cut itself, by at most ", moved, " mm"));
     } else {
       surface.points = points;
     }

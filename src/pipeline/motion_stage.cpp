@@ -128,6 +128,7 @@ motion::TrackedRecording track_markers(const fs::path& markers, const fs::path& 
           setup.setup.side == Side::left ? "left" : "right",
           " hip, the subject file for the other");
   const motion::MarkerData recording = io::read_markers(markers);
+  for (const std::string& text : recording.warnings) monitor.warn(text);
   if (!setup.neutral_trial)
     return motion::track_recording(recording, nullptr, setup.setup, monitor);
   const motion::MarkerData neutral = io::read_markers(*setup.neutral_trial);

@@ -93,7 +93,7 @@ Record run_stage(const fs::path& folder, Record wanted, Reuse reuse, const Monit
   const fs::path partial = folder.string() + ".partial";
   make_empty_folder(partial);
   const RemoveOnExit cleanup(partial);
-
+  monitor.progress(wanted.verb, 0.0);
   fill(partial, wanted, monitor, body);
   write_record(partial / file, wanted);
   put_in_place(partial, folder);
@@ -108,6 +108,7 @@ Record run_file(const fs::path& out, Record wanted, const Monitor& monitor,
   const fs::path partial = folder / join_text('.', io::stem_of(out), ".partial-", ::getpid());
   make_empty_folder(partial);
   const RemoveOnExit cleanup(partial);
+  monitor.progress(wanted.verb, 0.0);
   fill(partial, wanted, monitor, body);
   write_record(partial / (io::stem_of(out) + ".json"), wanted);
   move_files(partial, folder);

@@ -86,4 +86,49 @@ TEST_F(Stage, StopsBeforeItBeginsOnceCancelled) {
   EXPECT_FALSE(fs::exists(folder_));
 }
 
+TEST_F(Stage, CancelledInItsLastMomentLeavesNothing) {
+  std::atomic<bool> flag{false};
+  Monitor monitor;
+  monitor.cancel_flag = &flag;
+  Record wanted;
+  wanted.verb = "mesh";
+  const auto body = [&](const fs::path& partial, Record&) {
+    io::write_bytes(partial / "result.txt", "content");
+    flag = true;
+  };
+  EXPECT_THROW(run_stage(folder_, wanted, Reuse::never, monitor, body), Error);
+  EXPECT_FALSE(fs::exists(folder_));
+  flag = false;
+  EXPECT_THROW(run_file(folder_ / "a.vtu", wanted, monitor, body), Error);
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+TEST_F(Stage, OfOneFileLeavesAllItsFilesAndTheRecordBesideThem) {
+  Record wanted;
+  wanted.verb = "track";
+  wanted.options["side"] = std::string("left");
+  const Record record =
+      run_file(folder_ / "a.csv", wanted, {}, [](const fs::path& partial, Record& r) {
+        io::write_bytes(partial / "a.csv", "motion");
+        io::write_bytes(partial / "a_residuals.csv", "residuals");
+        r.figures["frames"] = std::int64_t{3};
+      });
+  EXPECT_EQ(io::read_bytes(folder_ / "a.csv"), "motion");
+  EXPECT_EQ(io::read_bytes(folder_ / "a_residuals.csv"), "residuals");
+  const Record written = read_record(folder_ / "a.json");
+  EXPECT_EQ(std::get<std::int64_t>(written.figures.at("frames")), 3);
+  EXPECT_GT(written.peak_memory_mb, 0.0);
+  EXPECT_EQ(written.seconds, record.seconds);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 3);
+}
+TEST_F(Stage, OfOneFileThatFailsKeepsTheEarlierFile) {
+  io::write_bytes(folder_ / "a.csv", "earlier");
+  const auto failing = [](const fs::path& partial, Record&) {
+    io::write_bytes(partial / "a.csv", "half");
+    fail(ErrorCode::bad_input, "no marker");
+  };
+  EXPECT_THROW(run_file(folder_ / "a.csv", {}, {}, failing), Error);
+  EXPECT_EQ(io::read_bytes(folder_ / "a.csv"), "earlier");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
 }  // namespace coxa::pipeline
