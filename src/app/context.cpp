@@ -22,6 +22,7 @@ extern "C" void on_interrupt(int) {
 ProgressStyle style_for(const CommonOptions& common) {
   if (common.json) return ProgressStyle::json;
   if (common.quiet) return ProgressStyle::silent;
+  if (common.verbose) return ProgressStyle::log;
   return isatty(STDERR_FILENO) ? ProgressStyle::terminal : ProgressStyle::lines;
 }
 
@@ -55,7 +56,28 @@ Monitor Context::monitor() {
   return monitor;
 }
 
+void Context::log_record(const pipeline::Record& record) {
+  if (!common.verbose || record.verb.empty()) return;
+  if (!logged_.insert(record.verb + pipeline::record_key(record)).second) return;
+  if (progress_) progress_->finish_line();
+  if (common.json) {
+    const nlohmann::json json = nlohmann::json::parse(pipeline::to_json(record));
+    fmt::print("{}\n", nlohmann::json{{"record", json}}.dump());
+    return;
+  }
+  fmt::print(stderr, "{}: {:.2f} s, at most {:.0f} MB, key {:.12}\n", record.verb, record.seconds,
+             record.peak_memory_mb, pipeline::record_key(record));
+  for (const auto& [key, value] : record.options)
+    fmt::print(stderr, "  option  {:<44} {}\n", key, as_text(value));
+  for (const auto& [role, hash] : record.inputs)
+    fmt::print(stderr, "  input   {:<44} {:.12}\n", role, hash);
+  for (const auto& [key, value] : record.figures)
+    fmt::print(stderr, "  figure  {:<44} {}\n", key, as_text(value));
+  for (const std::string& text : record.warnings) fmt::print(stderr, "  warning {}\n", text);
+}
+
 void Context::print_result(const std::string& where, const pipeline::Record& record) {
+  log_record(record);
   if (progress_) progress_->finish_line();
   if (common.json) {
     nlohmann::json figures = nlohmann::json::object();

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 
 namespace coxa::app {
@@ -15,7 +16,7 @@ struct CommonOptions {
   std::uint64_t seed = 1;  ///< of everything random
   bool json = false;       ///< progress, result and errors as JSON lines on standard output
   bool quiet = false;      ///< errors and the result only
-  bool verbose = false;    ///< figures of every stage
+  bool verbose = false;    ///< log: when each step began, and the records in full
 };
 
 class ProgressPrinter;
@@ -29,6 +30,9 @@ class Context {
 
   /// Reports progress and warnings to the terminal; carries the Ctrl-C flag.
   Monitor monitor();
+  /// With -v: what a stage was asked, read, found and took, to standard error; a JSON line with
+  /// --json. Each record once.
+  void log_record(const pipeline::Record& record);
   /// Prints the closing lines of a verb: where the result is, and its figures.
   void print_result(const std::string& where, const pipeline::Record& record);
   /// One line for people; nothing with --quiet or --json.
@@ -40,6 +44,7 @@ class Context {
 
  private:
   std::unique_ptr<ProgressPrinter> progress_;
+  std::set<std::string> logged_;  ///< keys of the records told
 };
 
 }  // namespace coxa::app

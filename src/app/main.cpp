@@ -15,7 +15,9 @@ void add_common_flags(CLI::App& verb, CommonOptions& common) {
   verb.add_option("--seed", common.seed, "seed of everything random");
   verb.add_flag("--json", common.json, "progress, result and errors as JSON lines");
   verb.add_flag("--quiet", common.quiet, "no progress");
-  verb.add_flag("-v", common.verbose, "more about what is done");
+  verb.add_flag(
+      "-v", common.verbose,
+      "a log on standard error: steps with their times; options, inputs and figures in full");
 }
 
 void add_verbs(CLI::App& app, Context& context) {

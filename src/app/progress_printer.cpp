@@ -10,7 +10,7 @@ namespace coxa::app {
 namespace {
 using Clock = std::chrono::steady_clock;
 // piped output gets a line for every tenth, a terminal a fresh line five times a second
-constexpr double kLineShare = 0.1;
+constexpr double kLineShare = 0.1, kLogShare = 0.01;
 constexpr double kTerminalSeconds = 0.2;
 
 double seconds_since(Clock::time_point start) {
@@ -26,7 +26,7 @@ double ProgressPrinter::seconds_left(double share) const {
 bool ProgressPrinter::worth_printing(std::string_view stage, double share) const {
   if (stage != stage_ || (share >= 1.0 && printed_share_ < 1.0)) return true;
   if (style_ == ProgressStyle::terminal) return seconds_since(printed_at_) > kTerminalSeconds;
-  return share >= printed_share_ + kLineShare;
+  return share >= printed_share_ + (style_ == ProgressStyle::log ? kLogShare : kLineShare);
 }
 
 void ProgressPrinter::update(std::string_view stage, double share) {
@@ -50,6 +50,8 @@ void ProgressPrinter::update(std::string_view stage, double share) {
       fmt::print(stderr, "\r{:<70}", text);
       line_open_ = true;
       if (share >= 1.0) finish_line();
+    } else if (style_ == ProgressStyle::log) {
+      fmt::print(stderr, "{:8.2f} s  {}\n", seconds_since(start_), text);
     } else {
       fmt::print(stderr, "{}\n", text);
     }

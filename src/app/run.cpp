@@ -21,9 +21,9 @@ void run_chain(const RunArguments& arguments, Context& context) {
   // without --resume a run of its own starts from nothing, so that no stage of an older run is
   // mistaken for its own
   if (!arguments.resume && arguments.from.empty()) options.from = pipeline::kStages[0];
+  options.on_stage = [&](const pipeline::Record& record) { context.log_record(record); };
   const auto records = pipeline::run_subject(subject, out, options, context.monitor());
   pipeline::Record summary;
-  summary.verb = "run";
   for (const pipeline::Record& record : records) {
     summary.figures[record.verb + "_seconds"] = record.seconds;
     summary.figures["peak_memory_mb"] = record.peak_memory_mb;

@@ -23,7 +23,7 @@ constexpr double kShareDone[] = {0.0, 0.35, 0.45, 0.47, 0.97, 1.0};
 class Run {
  public:
   Run(const Subject& subject, fs::path out, const RunOptions& options, const Monitor& monitor)
-      : subject_(subject), out_(std::move(out)), monitor_(monitor) {
+      : subject_(subject), out_(std::move(out)), options_(options), monitor_(monitor) {
     const auto* end = std::end(kStages);
     const auto* from = options.from ? std::find(std::begin(kStages), end, *options.from) : end;
     if (options.from && from == end) {
@@ -74,6 +74,7 @@ class Run {
     const Reuse reuse = number >= first_forced_ ? Reuse::never : Reuse::if_unchanged;
     records_.push_back(stage(
         reuse, part_of(monitor_, kStages[number], kShareDone[number], kShareDone[number + 1])));
+    if (options_.on_stage) options_.on_stage(records_.back());
     write_manifest();
   }
 
@@ -96,6 +97,7 @@ class Run {
 
   const Subject& subject_;
   fs::path out_;
+  const RunOptions& options_;
   const Monitor& monitor_;
   std::ptrdiff_t first_forced_;
   std::vector<Record> records_;

@@ -40,6 +40,18 @@ TEST_F(CommandLine, MeshesAClosedSurfaceAndWritesItsRecord) {
   EXPECT_TRUE(fs::exists(folder_ / "shell.vtu"));
   EXPECT_NE(io::read_bytes(folder_ / "shell.json").find("\"verb\": \"mesh\""), std::string::npos);
 }
+TEST_F(CommandLine, LogsStepsAndTheWholeRecordOnlyWhenAskedTo) {
+  io::write_surface(folder_ / "shell.ply", test::lunate_shell());
+  const std::string mesh = "mesh --surface " + path("shell.ply") + " --out " + path("shell.vtu");
+  const Outcome plain = coxa_run(mesh), verbose = coxa_run(mesh + " -v");
+  EXPECT_EQ(verbose.exit_code, 0) << verbose.output;
+  for (const char* part :
+       {" s  mesh:   0 %", "option  max_tets", "input   surface", "figure  tets"}) {
+    EXPECT_TRUE(verbose.says(part)) << part << "\n" << verbose.output;
+    EXPECT_FALSE(plain.says(part)) << part << "\n" << plain.output;
+  }
+  EXPECT_TRUE(coxa_run(mesh + " -v --json").says("{\"record\":{\"coxa_version\""));
+}
 TEST_F(CommandLine, RefusesASolidBodyAndSaysWhy) {
   io::write_surface(folder_ / "ball.ply", test::icosphere(3, 8.0));
   const Outcome outcome =

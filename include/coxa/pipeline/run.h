@@ -5,6 +5,7 @@
 #include <coxa/pipeline/subject.h>
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ inline constexpr const char* kStages[] = {"segment", "mesh", "motion", "joint", 
 struct RunOptions {
   std::optional<std::string>
       from;  ///< run this stage and all after it again; none: what has changed
+  std::function<void(const Record&)> on_stage = {};  ///< called with the record of each stage done
 };
 
 /// The whole chain of one subject into `out`: a folder per stage, manifest.json, log.txt and a copy
