@@ -18,13 +18,37 @@ constexpr double kMaxNodeStep = 0.3;
 constexpr int kTangentAge = 8;
 // linear solves need not be better than this far from equilibrium, nor better than that near it
 constexpr double kLoosestLinear = 0.1, kTightestLinear = 1e-3;
-// net force left on a cartilage, relative to the joint force: half of what the bones' reactions may
-// be out of balance
-constexpr double kImbalance = 5e-4;
+// net force left on a cartilage, in residual tolerances: with the usual 2e-4, half of what the
+// bones' reactions may be out of balance
+constexpr double kImbalance = 2.5;
+// stale pairs make no use of a residual smaller than this share of what they left
+constexpr double kStalePairs = 0.01;
 // residual tolerance is tightened no further than by this for the sake of the net force
 constexpr double kFinestNewton = 0.03;
 // a state that is only passed through may be so much less exact
 constexpr double kSlackOnTheWay = 20.0, kOverlapSlack = 10.0;
+
+/// Aitken's dynamic relaxation of a fixed-point iteration x <- G(x): pairs found at x are frozen
+/// while G settles the forces, and a head that slides easily would otherwise overshoot for ever.
+/// Source: Küttler and Wall 2008, equation 44.
+class Relaxation {
+ public:
+  VecX next(const VecX& x, const VecX& G) {
+    VecX way = G - x;
+    if (way_.size() > 0) {
+      const VecX change = way - way_;
+      const double squared = change.squaredNorm();
+      if (squared > 0.0) share_ = std::clamp(-share_ * way_.dot(change) / squared, kLeast, 1.0);
+    }
+    way_ = std::move(way);
+    return x + share_ * way_;
+  }
+
+ private:
+  static constexpr double kLeast = 0.1;
+  VecX way_;
+  double share_ = 1.0;
+};
 
 /// How the gap of a constraint changes with the translation.
 Vec3 translation_slope(const collide::SurfaceContact& contact,
@@ -204,11 +228,12 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
   const double slack = exactness == Exactness::result ? 1.0 : kSlackOnTheWay;
   const Limits limits{
       .residual = slack * options_.residual_tolerance,
-      .imbalance = slack * kImbalance,
+      .imbalance = slack * kImbalance * options_.residual_tolerance,
       .penetration = std::min(slack, kOverlapSlack) * options_.penetration_tolerance};
   int iterations = 0;
   std::string reason;
   tangent_age_ = 0;
+  Relaxation relaxation;
   // what was stiffened on the way to the state before is slow to change, and may not be needed now
   state.contact.clear_stiffening();
   for (int round = 0;; ++round) {
@@ -228,12 +253,18 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
     // multipliers wait until the pairs have nearly found their place
     if (settling.residual <= 10.0 * limits.residual && settling.penetration > limits.penetration) {
       state.contact.update_multipliers(state.x, limits.penetration);
+      relaxation = {};
     }
-    const double nearer = std::min(1.0, limits.imbalance / settling.imbalance);
-    const double tolerance = 0.3 * limits.residual * std::max(nearer, kFinestNewton);
+    const bool only_imbalance =
+        settling.residual <= limits.residual && settling.imbalance > limits.imbalance;
+    const double nearer = only_imbalance ? limits.imbalance / settling.imbalance : 1.0;
+    const double tolerance = std::max(0.3 * limits.residual * std::max(nearer, kFinestNewton),
+                                      kStalePairs * settling.residual);
+    const VecX before = state.x;
     const SolveReport newton = relax(state, force, tolerance, reference_force(state, force));
     iterations += newton.iterations;
     reason = newton.reason;
+    state.x = relaxation.next(before, state.x);
     const double way = state.x.segment<3>(3 * system_.translation()).norm();
     if (!(way <= options_.max_translation)) {
       settling.reason =

@@ -7,18 +7,16 @@
 #include <chrono>
 
 #include "bone_limit.h"
+#include "equilibrium.h"
 #include "frame_figures.h"
-#include "march.h"
 
 namespace coxa::joint {
 
 JointOptions live_options() {
   JointOptions options;
-  options.residual_tolerance = 5e-3;
-  options.penetration_tolerance = 0.03;
-  options.max_newton_iterations = 8;
-  options.max_contact_updates = 6;
-  options.max_cutbacks = 0;
+  options.max_rotation_step = radians(2.0);
+  options.max_newton_iterations = 10;
+  options.max_contact_updates = 12;
   return options;
 }
 
@@ -29,7 +27,7 @@ struct LiveHip::Impl {
   JointOptions rough = live_options(), exact;
   HipSystem system;
   BoneLimit limit;
-  March rough_march, exact_march;
+  Equilibrium rough_equilibrium, exact_equilibrium;
   ClockFace clock;
   HipState state;
 
@@ -40,8 +38,8 @@ struct LiveHip::Impl {
                                       : Vec3::Constant(kNaN)),
         system(hip),
         limit(hip),
-        rough_march(system, mode, rough),
-        exact_march(system, mode, exact),
+        rough_equilibrium(system, mode, rough),
+        exact_equilibrium(system, mode, exact),
         clock(socket_clock(hip)),
         state{system.reference(), {}, system.make_contact(exact.contact_stiffness)} {}
 
@@ -57,13 +55,19 @@ struct LiveHip::Impl {
     return motion::angles_from_rotation(model.X_IP.R.transpose() * pose.R * model.X_IF.R,
                                         model.side);
   }
-  FrameResult solve(March& march, const BonePose& target, const Monitor& monitor);
+  FrameResult solve(const BonePose& target, Exactness exactness, const Monitor& monitor);
 };
 
-FrameResult LiveHip::Impl::solve(March& march, const BonePose& target, const Monitor& monitor) {
+FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
+                                 const Monitor& monitor) {
   const auto start = std::chrono::steady_clock::now();
+  Equilibrium& equilibrium = exactness == Exactness::result ? exact_equilibrium : rough_equilibrium;
+  HipState trial = state;
+  trial.pose = target;
+  system.update_pose(trial.x, state.pose, target);
+  const Settling settling = equilibrium.settle(trial, force, exactness, monitor);
+  if (settling.converged) state = std::move(trial);
   FrameResult frame;
-  const Settling settling = march.advance(state, target, force, monitor);
   frame.status = settling.converged ? FrameStatus::converged : FrameStatus::failed;
   frame.reason = settling.reason;
   frame.residual = settling.residual;
@@ -85,7 +89,7 @@ LiveHip::LiveHip(const JointModel& model, const LoadCase& load) {
           load.force_P.rows(), " forces; a hip led by hand takes one for all poses");
   impl_ = std::make_unique<Impl>(model, load);
   if (load.mode != LoadMode::force) return;
-  const std::string reason = impl_->exact_march.equilibrium().seat(impl_->state, impl_->force);
+  const std::string reason = impl_->exact_equilibrium.seat(impl_->state, impl_->force);
   if (!reason.empty()) fail(ErrorCode::no_convergence, reason);
 }
 
@@ -107,7 +111,7 @@ LiveHip::Step LiveHip::step_towards(const motion::HipAngles& target, const Monit
     step.frame.X_II = impl_->placed(from);
     step.frame.angles = impl_->angles_of(from);
   } else {
-    step.frame = impl_->solve(impl_->rough_march, next, monitor);
+    step.frame = impl_->solve(next, Exactness::on_the_way, monitor);
     step.arrived = share == 1.0 || step.frame.status != FrameStatus::converged;
   }
   step.frame.bone_clearance = clearance;
@@ -115,7 +119,7 @@ LiveHip::Step LiveHip::step_towards(const motion::HipAngles& target, const Monit
 }
 
 FrameResult LiveHip::settle(const Monitor& monitor) {
-  FrameResult frame = impl_->solve(impl_->exact_march, impl_->state.pose, monitor);
+  FrameResult frame = impl_->solve(impl_->state.pose, Exactness::result, monitor);
   frame.bone_clearance = impl_->limit.clearance(frame.X_II);
   return frame;
 }

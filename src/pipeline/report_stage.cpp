@@ -2,6 +2,7 @@
 
 #include <coxa/core/error.h>
 #include <coxa/io/landmarks.h>
+#include <coxa/joint/joint_result.h>
 #include <coxa/pipeline/motion_stage.h>
 #include <coxa/pipeline/segment_stage.h>
 #include <coxa/view/pictures.h>
@@ -9,6 +10,7 @@
 #include <coxa/view/report.h>
 
 #include <cmath>
+#include <optional>
 
 #include "result_frames.h"
 
@@ -73,6 +75,25 @@ std::string figure(const Record& record, const std::string& key) {
   return it == record.figures.end() ? "–" : text_of(it->second);
 }
 
+/// Which of the six regions is strained most at the last converged frame, as a row of the summary.
+std::optional<std::vector<std::string>> highest_region(const ResultFrames& frames) {
+  const FrameRow* last = nullptr;
+  for (const FrameRow& row : frames.rows) {
+    if (row.converged()) last = &row;
+  }
+  if (last == nullptr) return std::nullopt;
+  std::string region;
+  double highest = -kInfinity;
+  for (const char* name : joint::kRegionNames) {
+    const double strain = last->number(std::string("strain_") + name);
+    if (strain > highest) highest = strain, region = name;
+  }
+  return std::vector<std::string>{
+      "Strained most at the last converged frame (" + text_of(last->number("flexion_deg")) +
+          "° flexion, " + text_of(last->number("internal_rotation_deg")) + "° internal rotation)",
+      region + ", mean effective strain " + text_of(highest)};
+}
+
 void add_summary(view::ReportWriter& page, const Sources& s) {
   page.heading("Summary");
   std::vector<std::vector<std::string>> rows{
@@ -103,6 +124,7 @@ void add_summary(view::ReportWriter& page, const Sources& s) {
                         figure(s.joint, "bony_limit_internal_rotation_deg") + " degrees, at " +
                         figure(s.joint, "bony_limit_clock_hour") + " o'clock"});
   }
+  if (const auto highest = highest_region(s.frames)) rows.push_back(*highest);
   page.table({"", ""}, rows);
   page.paragraph(
       "Research software, not a medical device. Angles: ISB; flexion +, adduction +, internal "
@@ -185,10 +207,10 @@ void add_curves(view::ReportWriter& page, const ResultFrames& frames) {
         {"peak (5 mm² patch)", "peak_pressure_5mm2_MPa"},
         {"mean", "mean_pressure_MPa"}});
   plot("Contact area", "mm²", {{"contact area", "contact_area_mm2"}});
-  plot("Mean effective strain by region", "",
-       {{"anterosuperior", "strain_anterosuperior"},
-        {"superior", "strain_superior"},
-        {"posterosuperior", "strain_posterosuperior"}});
+  std::vector<std::pair<std::string, std::string>> regions;
+  for (const char* name : joint::kRegionNames)
+    regions.emplace_back(name, std::string("strain_") + name);
+  plot("Mean effective strain by region", "", regions);
 }
 
 void add_frame_table(view::ReportWriter& page, const ResultFrames& frames) {
@@ -205,7 +227,10 @@ void add_frame_table(view::ReportWriter& page, const ResultFrames& frames) {
   std::vector<std::vector<std::string>> rows;
   for (const FrameRow& row : frames.rows) {
     std::vector<std::string> cells;
-    for (const std::string& name : columns) cells.push_back(row.cell(name));
+    for (const std::string& name : columns) {
+      const double number = row.number(name);
+      cells.push_back(number == number ? text_of(number) : row.cell(name));
+    }
     rows.push_back(cells);
   }
   page.table(columns, rows, "Frame by frame; all columns are in joint/summary.csv");

@@ -69,7 +69,9 @@ std::string FrameRow::cell(const std::string& column) const {
 
 double FrameRow::number(const std::string& column) const {
   const std::string text = cell(column);
-  return text.empty() ? kNaN : std::strtod(text.c_str(), nullptr);
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  return text.empty() || *end != '\0' ? kNaN : value;
 }
 
 ResultFrames read_result_frames(const fs::path& joint_folder) {

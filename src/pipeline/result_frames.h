@@ -15,7 +15,7 @@ struct FrameRow {
   std::map<std::string, std::string> cells;
   /// The text of a column; empty where there is none.
   std::string cell(const std::string& column) const;
-  /// Its number; NaN where the cell is empty.
+  /// Its number; NaN where the cell holds none.
   double number(const std::string& column) const;
   bool converged() const { return cell("status") == "converged"; }
 };

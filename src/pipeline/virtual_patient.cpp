@@ -64,8 +64,8 @@ std::string subject_toml(const VirtualPatientRequest& request) {
       "# A virtual patient, seed ", request.seed, ": no person.\nname = \"virtual_patient_",
       request.seed, "\"\nside = \"", request.side == Side::left ? "left" : "right",
       "\"\n\n[image]\npath = \"image.nii.gz\"\n\n[landmarks]\npath = \"landmarks.mrk.json\"\n\n",
-      "[motion]\npattern = \"flexion_internal_rotation\"\nframes = 7\n\n",
-      "[mesh]\nmax_tets = 6000\n");
+      "[motion]\npattern = \"flexion_internal_rotation\"\nframes = 13\n\n",
+      "[mesh]\nmax_tets = 12000\n");
 }
 
 void check_request(const VirtualPatientRequest& request) {
