@@ -169,7 +169,7 @@ CaseFolder::Hip CaseFolder::read_hip() const {
   return hip;
 }
 
-Json CaseFolder::clock() const {
+Json CaseFolder::joint_frames() const {
   joint::JointModel model;
   model.side = side();
   model.acetabular_cartilage = io::read_tets(folder_ / "mesh/acetabular_cartilage.vtu");
@@ -177,10 +177,17 @@ Json CaseFolder::clock() const {
   model.X_IP = artefacts.frames.pelvis.X_IB;
   model.X_IF = artefacts.frames.femur.X_IB;
   const ClockFace face = joint::socket_clock(model);
-  return {{"centre", json_of(face.centre)},
-          {"axis", json_of(face.axis)},
-          {"twelve", json_of(face.twelve)},
-          {"three", json_of(face.three)}};
+  const motion::HipAngles image =
+      motion::angles_from_rotation(model.X_IP.R.transpose() * model.X_IF.R, model.side);
+  return {{"clock",
+           {{"centre", json_of(face.centre)},
+            {"axis", json_of(face.axis)},
+            {"twelve", json_of(face.twelve)},
+            {"three", json_of(face.three)}}},
+          {"image_pose",
+           {{"flexion_deg", degrees(image.flexion)},
+            {"adduction_deg", degrees(image.adduction)},
+            {"internal_rotation_deg", degrees(image.internal_rotation)}}}};
 }
 
 Json CaseFolder::overview() const {
@@ -204,7 +211,7 @@ Json CaseFolder::overview() const {
   const bool framed = has_meshes() && fs::exists(folder_ / "motion/frames.json") &&
                       fs::exists(folder_ / "subject.toml");
   json["live"] = framed;
-  if (framed) json["clock"] = clock();
+  if (framed) json.update(joint_frames());
   if (fs::exists(folder_ / "joint/summary.csv"))
     json["summary"] = csv_table(folder_ / "joint/summary.csv");
   if (fs::exists(folder_ / "motion/motion.csv"))

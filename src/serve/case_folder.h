@@ -61,7 +61,8 @@ class CaseFolder {
  private:
   pipeline::JointRequest joint_request() const;
   Side side() const;
-  nlohmann::json clock() const;
+  /// The socket's clock face, and the angles at which the hip was imaged.
+  nlohmann::json joint_frames() const;
   RigidTransform unsolved_pose(Index index) const;
 
   std::filesystem::path folder_;

@@ -1,0 +1,87 @@
+import { ColourBar } from "../colour/bar";
+import type { MapName } from "../colour/maps";
+import type { Scale } from "../colour/scale";
+import { readable, type Case } from "../core/case";
+import { labelled, make, select } from "../core/dom";
+import type { Bundle } from "../core/bundle";
+import type { HipModel } from "../scene/hip_model";
+
+type RangeMode = "fixed" | "frame" | "own";
+/** Fields of the segmentation's surfaces, beside those of the simulation. */
+const kSurfaceFields = [
+  { key: "confidence", label: "confidence of the segmentation", unit: "" },
+  { key: "cartilage_thickness_mm", label: "cartilage thickness over the bone", unit: "mm" },
+];
+
+/** What surfaces are coloured by: field, map and range; with the colour bar that says so. */
+export class FieldChoice {
+  readonly element = make("div");
+  readonly bar = new ColourBar();
+  scale: Scale | null = null;
+  field: string | null = null;
+  private map: MapName = "viridis";
+  private mode: RangeMode = "fixed";
+  private readonly low = make("input", { type: "number", step: "any", "aria-label": "Lowest value", disabled: true });
+  private readonly high = make("input", { type: "number", step: "any", "aria-label": "Highest value", disabled: true });
+  private readonly fieldSelect: HTMLSelectElement;
+
+  constructor(
+    private readonly info: Case,
+    private readonly hip: HipModel,
+    private readonly frames: () => Bundle[],
+    private readonly onChange: () => void,
+  ) {
+    const known = [...(info.bodies.length > 0 ? info.fields : []), ...(info.surfaces.length > 0 ? kSurfaceFields : [])];
+    this.fieldSelect = select([["", "structures' own colours"], ...known.map((f): [string, string] => [f.key, f.label])], (value) => {
+      this.field = value || null;
+      this.onChange();
+    });
+    this.fieldSelect.dataset["testid"] = "field";
+    const mapSelect = select([["viridis", "viridis"], ["cividis", "cividis"]], (value) => {
+      this.map = value as MapName;
+      this.onChange();
+    });
+    const modeSelect = select([["fixed", "the same for all frames"], ["frame", "of each frame"], ["own", "typed in"]], (value) => {
+      this.mode = value as RangeMode;
+      this.low.disabled = this.high.disabled = value !== "own";
+      this.onChange();
+    });
+    modeSelect.dataset["testid"] = "range";
+    for (const input of [this.low, this.high]) input.addEventListener("change", () => this.onChange());
+    this.element.append(
+      make("h2", {}, "Colour"),
+      labelled("Coloured by", this.fieldSelect),
+      labelled("Colour map", mapSelect),
+      labelled("Range", modeSelect),
+      make("div", { class: "row pair" }, this.low, this.high),
+    );
+  }
+
+  choose(field: string): void {
+    this.fieldSelect.value = field;
+    this.field = this.fieldSelect.value || null;
+  }
+
+  /** Works out the scale and colours the hip with it. */
+  apply(): void {
+    this.scale = this.field ? this.scaleOf(this.field) : null;
+    this.hip.colour(this.field, this.scale);
+    this.bar.show(this.scale);
+  }
+
+  label(field: string): string {
+    const known = [...this.info.fields, ...kSurfaceFields].find((f) => f.key === field);
+    return known ? `${known.label}${known.unit ? ` [${known.unit}]` : ""}` : readable(field);
+  }
+
+  private scaleOf(field: string): Scale {
+    const typed: [number, number] = [this.low.valueAsNumber, this.high.valueAsNumber];
+    let [low, high] = this.hip.range(field, this.mode === "fixed" ? this.frames() : []);
+    if (this.mode === "own" && typed[1] > typed[0]) [low, high] = typed;
+    else {
+      this.low.value = low.toPrecision(3);
+      this.high.value = high.toPrecision(3);
+    }
+    return { map: this.map, low, high, label: this.label(field) };
+  }
+}

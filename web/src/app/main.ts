@@ -1,0 +1,177 @@
+import "./style.css";
+import { api } from "../core/api";
+import { decodeBundle } from "../core/bundle";
+import type { Case, Vec3 } from "../core/case";
+import { byId, make, say } from "../core/dom";
+import { Socket } from "../core/socket";
+import { FrameStore } from "../scene/frame_store";
+import { HipModel } from "../scene/hip_model";
+import { Viewer } from "../scene/viewer";
+import { ExamPage } from "./exam_page";
+import { FieldChoice } from "./field_choice";
+import { ImagePage } from "./image_page";
+import type { Job } from "./job_panel";
+import { Probe } from "./probe";
+import { ResultPage } from "./result_page";
+import { SceneControls, viewpointButtons } from "./scene_controls";
+import { startTheme } from "./theme";
+
+type PageName = "result" | "exam" | "image";
+
+/** The application over one folder. */
+class App {
+  private page: PageName = "result";
+  private readonly viewer = new Viewer(byId<HTMLCanvasElement>("scene"));
+  private readonly hip = new HipModel(this.viewer);
+  private readonly frames: FrameStore;
+  private readonly colours: FieldChoice;
+  private readonly probe: Probe;
+  private readonly result: ResultPage;
+  private readonly exam: ExamPage;
+  private readonly image: ImagePage;
+  private readonly socket: Socket;
+  private readonly tabs = new Map<PageName, HTMLButtonElement>();
+
+  constructor(private readonly info: Case) {
+    const send = (message: Record<string, unknown>): boolean => this.socket.send(message);
+    this.frames = new FrameStore(info.summary?.rows.length ?? 0);
+    this.colours = new FieldChoice(info, this.hip, () => this.frames.loaded(), () => this.recolour());
+    this.probe = new Probe(this.viewer, this.hip, info);
+    this.result = new ResultPage(info, this.viewer, this.hip, this.frames, this.colours, this.probe);
+    this.exam = new ExamPage(this.viewer, this.hip, this.colours, this.probe, info.image_pose, send);
+    this.image = new ImagePage(info, this.viewer, this.hip, send);
+    this.image.jobs.onDone = () => location.reload();
+    this.socket = new Socket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`, {
+      state: (state) => this.connection(state === "open"),
+      text: (message) => this.hear(message),
+      binary: (message) => this.exam.receive(decodeBundle(message)),
+    });
+  }
+
+  async start(): Promise<void> {
+    byId("subject").textContent = `${this.info.name}${this.info.side ? ` · ${this.info.side} hip` : ""}`;
+    document.title = `coxa · ${this.info.name}`;
+    byId("bar").append(this.colours.bar.element);
+    this.buildTabs();
+    await this.hip.load(this.info);
+    this.result.surfacesLoaded();
+    byId("views").append(...viewpointButtons(this.viewer, this.info.clock));
+    this.viewer.look([-0.35, -1, 0.25]);
+    if (this.frames.count > 0) this.colours.choose("contact_pressure");
+    this.go(this.info.bodies.length === 0 && this.info.surfaces.length === 0 && this.info.image ? "image" : "result");
+    await this.result.show(0);
+    this.recolour();
+    document.body.dataset["ready"] = "yes";
+    await this.frames.fetchAhead(() => this.page === "result" && this.recolour());
+    document.body.dataset["allFrames"] = "yes";
+  }
+
+  themeChanged(): void {
+    this.result.themeChanged();
+  }
+
+  private buildTabs(): void {
+    const names: [PageName, string, boolean][] = [
+      ["result", "Result", true],
+      ["exam", "Examine", this.info.live],
+      ["image", "Image and landmarks", true],
+    ];
+    for (const [name, text, there] of names) {
+      const tab = make("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": "main" }, text);
+      tab.disabled = !there;
+      tab.addEventListener("click", () => this.go(name));
+      this.tabs.set(name, tab);
+    }
+    const list = byId("tabs");
+    list.append(...this.tabs.values());
+    list.addEventListener("keydown", (event) => {
+      const order = [...this.tabs].filter(([, tab]) => !tab.disabled).map(([name]) => name);
+      const by = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
+      const next = order[(order.indexOf(this.page) + by + order.length) % order.length];
+      if (by === 0 || !next) return;
+      this.go(next);
+      this.tabs.get(next)?.focus();
+    });
+  }
+
+  private go(page: PageName): void {
+    if (this.page === "exam" && page !== "exam") this.exam.leave();
+    this.result.time?.stop();
+    this.page = page;
+    document.body.dataset["page"] = page;
+    for (const [name, tab] of this.tabs) {
+      tab.setAttribute("aria-selected", String(name === page));
+      tab.tabIndex = name === page ? 0 : -1;
+    }
+    const pages = { result: this.result, exam: this.exam, image: this.image };
+    const own = pages[page];
+    const shared = page === "image" ? [] : [this.colours.element, this.controls()];
+    byId("panel").replaceChildren(...(page === "exam" ? [own.panel, ...shared] : [...shared, own.panel]));
+    byId("side").replaceChildren(own.side);
+    byId("slices").hidden = page !== "image";
+    byId("time").hidden = page !== "result" || this.frames.count === 0;
+    this.viewer.showMarker(null);
+    this.probe.clear();
+    if (page === "result") void this.result.show(this.result.currentFrame);
+    if (page === "exam") this.exam.enter();
+    if (page === "image") void this.image.open();
+  }
+
+  private sceneControls: SceneControls | null = null;
+  private controls(): HTMLElement {
+    const centre: Vec3 = this.info.clock?.centre ?? [0, 0, 0];
+    this.sceneControls ??= new SceneControls(this.viewer, centre);
+    return this.sceneControls.element;
+  }
+
+  private recolour(): void {
+    if (this.page === "result") this.result.refresh();
+    else this.colours.apply();
+  }
+
+  private connection(open: boolean): void {
+    const line = byId("connection");
+    line.dataset["state"] = open ? "open" : "lost";
+    line.textContent = open ? "connected" : "connection lost, trying again …";
+    if (open && this.page === "exam") this.exam.client.reconnect();
+  }
+
+  private hear(message: Record<string, unknown>): void {
+    switch (message["type"]) {
+      case "hello":
+        this.image.jobs.show(message["job"] as Job);
+        break;
+      case "job":
+        this.image.jobs.show(message as unknown as Job);
+        break;
+      case "landmarks":
+        void this.image.changedElsewhere(String(message["version"]));
+        break;
+      case "live_error":
+        this.exam.fail(Number(message["number"]), String(message["text"]));
+        break;
+      case "live_broken_off":
+        this.exam.client.fail(Number(message["number"]));
+        break;
+      case "error":
+        say(String(message["text"]), "error");
+        break;
+    }
+  }
+}
+
+async function main(): Promise<void> {
+  // the token of the address is in a cookie by now
+  if (location.search.includes("token=")) history.replaceState(null, "", location.pathname);
+  let app: App | null = null;
+  startTheme(() => app?.themeChanged());
+  try {
+    app = new App(await api.case());
+    await app.start();
+  } catch (error) {
+    say((error as Error).message, "error");
+    throw error;
+  }
+}
+
+void main();

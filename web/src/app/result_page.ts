@@ -1,0 +1,129 @@
+import { ClockMap } from "../charts/clock_map";
+import { Curves } from "../charts/curves";
+import { floats, triangles } from "../core/bundle";
+import { column, textColumn, type Case, type Table } from "../core/case";
+import { toCsv } from "../core/csv";
+import { button, byId, download, make, say } from "../core/dom";
+import type { FrameStore } from "../scene/frame_store";
+import type { HipModel } from "../scene/hip_model";
+import type { Viewer } from "../scene/viewer";
+import type { FieldChoice } from "./field_choice";
+import type { Probe } from "./probe";
+import { TimeBar } from "./time_bar";
+
+/** The finished movement: curves, clock face and time slider, all at one frame. */
+export class ResultPage {
+  readonly panel = make("div");
+  readonly side = make("div");
+  readonly time: TimeBar | null;
+  lastFrameMs = 0;
+  private frame = 0;
+  private readonly curves: Curves;
+  private readonly clock: ClockMap;
+
+  constructor(
+    private readonly info: Case,
+    private readonly viewer: Viewer,
+    private readonly hip: HipModel,
+    private readonly frames: FrameStore,
+    private readonly colours: FieldChoice,
+    private readonly probe: Probe,
+  ) {
+    this.curves = new Curves((frame) => void this.show(frame));
+    this.clock = new ClockMap(info.side ?? "right");
+    const summary = info.summary;
+    this.time = summary ? new TimeBar(frames.count, (frame) => void this.show(frame), (frame) => this.frameText(summary, frame)) : null;
+    this.panel.append(...this.exports(), ...this.notes());
+    if (summary) this.side.append(this.clock.element, this.curves.element);
+    else this.side.append(make("p", {}, "No simulation yet: curves and maps appear here when the chain has run."));
+    if (summary) this.startCurves(summary);
+  }
+
+  get currentFrame(): number {
+    return this.frame;
+  }
+
+  async show(frame: number): Promise<void> {
+    if (this.frames.count === 0) return;
+    this.frame = Math.min(this.frames.count - 1, Math.max(0, frame));
+    const wanted = this.frame;
+    this.time?.set(wanted);
+    this.curves.setFrame(wanted);
+    const bundle = this.frames.peek(wanted) ?? (await this.frames.get(wanted));
+    if (wanted !== this.frame) return; // the slider has gone on meanwhile
+    const start = performance.now();
+    this.hip.apply(bundle);
+    this.refresh();
+    this.lastFrameMs = performance.now() - start;
+    byId("time").dataset["frame"] = String(wanted);
+    byId("time").dataset["readyMs"] = this.lastFrameMs.toFixed(1);
+  }
+
+  /** Colours, clock face and probe again, at the same frame. */
+  refresh(): void {
+    this.colours.apply();
+    const field = this.colours.field;
+    this.clock.show(field ? this.hip.values("acetabular_cartilage", field) : null, this.colours.scale);
+    this.probe.refresh();
+  }
+
+  themeChanged(): void {
+    this.curves.build();
+    this.refresh();
+  }
+
+  private frameText(summary: Table, frame: number): string {
+    const at = (name: string): number => column(summary, name)[frame] ?? NaN;
+    const angle = (name: string): string => `${at(name).toFixed(1)}°`;
+    const status = textColumn(summary, "status")[frame] ?? "";
+    const text = `Frame ${frame + 1} of ${summary.rows.length} · ${at("time_s").toFixed(2)} s · flexion ${angle("flexion_deg")}, adduction ${angle("adduction_deg")}, internal rotation ${angle("internal_rotation_deg")}`;
+    return status === "converged" ? text : `${text} · ${status.replaceAll("_", " ")}: no result`;
+  }
+
+  /** The surfaces are there: the clock face can be laid out. */
+  surfacesLoaded(): void {
+    const body = this.hip.bodies.get("acetabular");
+    const tags = body?.arrays.get("tags");
+    if (!body || !this.info.clock || !(tags instanceof Uint8Array)) return;
+    this.clock.setSurface(this.info.clock, floats(body, "positions"), triangles(body), tags);
+  }
+
+  private startCurves(summary: Table): void {
+    const pick = (names: [column: string, label: string][]): { label: string; values: number[] }[] =>
+      names.map(([name, label]) => ({ label, values: column(summary, name) }));
+    this.curves.show(
+      column(summary, "time_s"),
+      [
+        { title: "Joint angles [°]", curves: pick([["flexion_deg", "flexion"], ["adduction_deg", "adduction"], ["internal_rotation_deg", "internal rotation"]]) },
+        { title: "Contact pressure [MPa]", curves: pick([["peak_pressure_p99_MPa", "peak (99th percentile)"], ["mean_pressure_MPa", "mean"]]) },
+        { title: "Contact area [mm²]", curves: pick([["contact_area_mm2", "contact area"]]) },
+      ],
+      textColumn(summary, "status").map((status) => status !== "converged"),
+    );
+  }
+
+  private exports(): HTMLElement[] {
+    const sizes: [string, number, number][] = [["1280 × 800", 1280, 800], ["1920 × 1200", 1920, 1200], ["3840 × 2400", 3840, 2400]];
+    const picture = sizes.map(([text, width, height]) =>
+      button(`PNG ${text}`, () => {
+        const background = getComputedStyle(document.documentElement).getPropertyValue("--scene").trim();
+        this.viewer
+          .picture(width, height, background)
+          .then((blob) => download(`${this.info.name}_frame${this.frame + 1}.png`, blob))
+          .catch((error: Error) => say(error.message, "error"));
+      }),
+    );
+    const table = this.info.summary;
+    if (table) picture.push(button("CSV of the curves", () => download(`${this.info.name}_summary.csv`, toCsv(table))));
+    const parts: HTMLElement[] = [make("h2", {}, "Take away"), make("div", { class: "buttons" }, ...picture)];
+    if (this.info.report) parts.push(make("p", {}, make("a", { href: this.info.report, target: "_blank", rel: "noopener" }, "Report")));
+    return parts;
+  }
+
+  private notes(): HTMLElement[] {
+    const warnings = (this.info.stages ?? []).flatMap((stage) => stage.warnings.map((text) => `${stage.verb}: ${text}`));
+    if (warnings.length === 0) return [];
+    const list = make("ul", {}, ...warnings.map((text) => make("li", { class: "note" }, text)));
+    return [make("details", {}, make("summary", {}, `${warnings.length} warnings of the run`), list)];
+  }
+}

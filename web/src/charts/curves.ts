@@ -1,0 +1,119 @@
+import uPlot from "uplot";
+import "uplot/dist/uPlot.min.css";
+import { make } from "../core/dom";
+
+export interface Curve {
+  label: string;
+  values: number[];
+}
+export interface CurvePlot {
+  title: string; // with the unit
+  curves: Curve[];
+}
+
+// colours after Okabe and Ito, and dashes, so that curves differ without colour too
+const strokes = ["#0072b2", "#d55e00", "#009e73"];
+const darkStrokes = ["#56b4e9", "#e69f00", "#2fd0a5"];
+const dashes = [[], [8, 4], [2, 3]];
+
+/** Plots over the frames of a movement, one below the other; clicking one chooses the frame. */
+export class Curves {
+  readonly element = make("section", { class: "curves", "aria-label": "Curves over the movement" });
+  private plots: uPlot[] = [];
+  private data: { x: number[]; plots: CurvePlot[]; lacking: boolean[] } | null = null;
+  private current = 0;
+
+  constructor(private readonly onChoose: (frame: number) => void) {
+    new ResizeObserver(() => this.build()).observe(this.element);
+  }
+
+  /** @param lacking frames without a result, shaded */
+  show(x: number[], plots: CurvePlot[], lacking: boolean[]): void {
+    this.data = { x, plots, lacking };
+    this.build();
+  }
+
+  setFrame(frame: number): void {
+    this.current = frame;
+    for (const plot of this.plots) plot.redraw(false);
+  }
+
+  /** Again, with the colours of the theme now in use. */
+  build(): void {
+    const width = this.element.clientWidth;
+    if (!this.data || width < 50) return;
+    for (const plot of this.plots) plot.destroy();
+    this.element.replaceChildren();
+    this.plots = this.data.plots.map((plot) => this.plot(plot, width));
+  }
+
+  private plot({ title, curves }: CurvePlot, width: number): uPlot {
+    const style = getComputedStyle(this.element);
+    const ink = style.getPropertyValue("--ink");
+    const line = style.getPropertyValue("--line");
+    const palette = style.getPropertyValue("--dark").trim() === "1" ? darkStrokes : strokes;
+    const box = make("figure", { role: "img", "aria-label": `${title} over the movement: ${curves.map((c) => c.label).join(", ")}` });
+    const keys = curves.map((curve, i) => {
+      const key = make("span", { class: `key key-${i % 3}` });
+      key.style.borderColor = palette[i % 3] ?? ink;
+      return make("span", {}, key, curve.label);
+    });
+    box.append(make("figcaption", {}, make("strong", {}, title), ...keys));
+    this.element.append(box);
+    const x = this.data?.x ?? [];
+    const axis = { stroke: ink, grid: { stroke: line, width: 1 }, ticks: { stroke: line }, font: "11px system-ui" };
+    return new uPlot(
+      {
+        width,
+        height: 104,
+        cursor: { points: { show: false }, drag: { x: false, y: false } },
+        scales: { x: { time: false } },
+        axes: [{ ...axis, size: 26 }, { ...axis, size: 40 }],
+        legend: { show: false },
+        series: [
+          { label: "frame" },
+          ...curves.map((curve, i) => ({
+            label: curve.label,
+            stroke: palette[i % 3] ?? ink,
+            dash: dashes[i % 3] ?? [],
+            width: 2,
+            points: { show: true, size: 5 },
+          })),
+        ],
+        hooks: {
+          drawClear: [(u) => this.shade(u, line)],
+          draw: [(u) => this.mark(u, ink)],
+          ready: [(u) => u.over.addEventListener("click", () => u.cursor.idx !== undefined && u.cursor.idx !== null && this.onChoose(u.cursor.idx))],
+        },
+      },
+      [x, ...curves.map((curve) => curve.values.map((v) => (Number.isNaN(v) ? null : v)))],
+      box,
+    );
+  }
+
+  private shade(u: uPlot, colour: string): void {
+    const { x = [], lacking = [] } = this.data ?? {};
+    u.ctx.save();
+    u.ctx.fillStyle = colour;
+    lacking.forEach((isLacking, i) => {
+      if (!isLacking) return;
+      const from = u.valToPos(((x[i - 1] ?? x[i] ?? 0) + (x[i] ?? 0)) / 2, "x", true);
+      const to = u.valToPos(((x[i + 1] ?? x[i] ?? 0) + (x[i] ?? 0)) / 2, "x", true);
+      u.ctx.globalAlpha = 0.5;
+      u.ctx.fillRect(from, u.bbox.top, to - from, u.bbox.height);
+    });
+    u.ctx.restore();
+  }
+
+  private mark(u: uPlot, colour: string): void {
+    const at = u.valToPos(this.data?.x[this.current] ?? 0, "x", true);
+    u.ctx.save();
+    u.ctx.strokeStyle = colour;
+    u.ctx.lineWidth = 1.5 * devicePixelRatio;
+    u.ctx.beginPath();
+    u.ctx.moveTo(at, u.bbox.top);
+    u.ctx.lineTo(at, u.bbox.top + u.bbox.height);
+    u.ctx.stroke();
+    u.ctx.restore();
+  }
+}

@@ -1,0 +1,212 @@
+import * as THREE from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import type { Vec3 } from "../core/case";
+import { SurfaceLayer } from "./surface_layer";
+
+export interface Hit {
+  layer: SurfaceLayer;
+  point: Vec3; // in the world
+  corners: [number, number, number];
+  weights: Vec3;
+}
+
+/** Where the eye stands, as a direction from the middle of what is looked at (LPS). */
+export const viewpoints: Record<string, Vec3> = {
+  front: [0, -1, 0],
+  back: [0, 1, 0],
+  left: [1, 0, 0],
+  right: [-1, 0, 0],
+  above: [0, 0.001, 1],
+  below: [0, 0.001, -1],
+};
+
+const kTurn = Math.PI / 36;
+const kMargin = 1.08;
+
+/** The 3D view: parallel projection, drawn only when something has changed. */
+export class Viewer {
+  readonly scene = new THREE.Scene();
+  readonly camera = new THREE.OrthographicCamera(-100, 100, 100, -100, -2000, 4000);
+  readonly renderer: THREE.WebGLRenderer;
+  readonly controls: OrbitControls;
+  readonly layers = new Map<string, SurfaceLayer>();
+  onDrawn: ((milliseconds: number) => void) | null = null;
+  private readonly marker = new THREE.Mesh(new THREE.SphereGeometry(1, 16, 12), new THREE.MeshBasicMaterial({ color: 0xd00000, depthTest: false }));
+  private readonly plane = new THREE.Plane(new THREE.Vector3(0, 0, -1), 0);
+  private clipping = false;
+  private halfHeight = 80;
+  private queued = false;
+
+  constructor(readonly canvas: HTMLCanvasElement) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "high-performance" });
+    this.renderer.localClippingEnabled = true;
+    this.camera.up.set(0, 0, 1);
+    // a light at the eye takes at most a third of the brightness: colours stay comparable with the bar
+    const headlight = new THREE.DirectionalLight(0xffffff, 0.35 * Math.PI);
+    headlight.position.set(0.3, 0.5, 1);
+    this.camera.add(headlight);
+    this.scene.add(this.camera, new THREE.AmbientLight(0xffffff, 0.68 * Math.PI), this.marker);
+    this.marker.visible = false;
+    this.marker.renderOrder = 2;
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener("change", () => this.invalidate());
+    canvas.addEventListener("keydown", (event) => this.onKey(event));
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement ?? canvas);
+    this.resize();
+  }
+
+  add(layer: SurfaceLayer): void {
+    this.remove(layer.name);
+    this.layers.set(layer.name, layer);
+    this.scene.add(layer.mesh);
+    layer.setClipping(this.clipping ? [this.plane] : []);
+    this.invalidate();
+  }
+
+  remove(name: string): void {
+    const old = this.layers.get(name);
+    if (!old) return;
+    this.scene.remove(old.mesh);
+    old.dispose();
+    this.layers.delete(name);
+  }
+
+  /** Points the eye from a direction at the middle of the given layers, filling the view with them. */
+  look(from: Vec3, names: string[] = [...this.layers.keys()], up: Vec3 = [0, 0, 1]): void {
+    const box = new THREE.Box3();
+    for (const name of names) {
+      const layer = this.layers.get(name);
+      if (layer) box.expandByObject(layer.mesh);
+    }
+    if (box.isEmpty()) box.set(new THREE.Vector3(-80, -80, -80), new THREE.Vector3(80, 80, 80));
+    const middle = box.getCenter(new THREE.Vector3());
+    this.camera.up.set(...up);
+    this.camera.zoom = 1;
+    this.camera.position.copy(middle).addScaledVector(new THREE.Vector3(...from).normalize(), 600);
+    this.controls.target.copy(middle);
+    this.controls.update();
+    this.camera.updateMatrixWorld();
+    // half the extents of the box as the eye sees it, and what is wide for its height
+    const seen = box.clone().applyMatrix4(this.camera.matrixWorldInverse).getSize(new THREE.Vector3());
+    const parent = (this.canvas.parentElement ?? this.canvas).getBoundingClientRect();
+    const aspect = parent.width / Math.max(1, parent.height);
+    this.halfHeight = kMargin * 0.5 * Math.max(seen.y, aspect < 1 ? seen.x : seen.x / aspect);
+    this.resize();
+    this.invalidate();
+  }
+
+  setClip(on: boolean, normal: Vec3 = [0, 0, -1], offset = 0): void {
+    this.clipping = on;
+    this.plane.set(new THREE.Vector3(...normal), offset);
+    for (const layer of this.layers.values()) layer.setClipping(on ? [this.plane] : []);
+    this.invalidate();
+  }
+
+  showMarker(at: Vec3 | null): void {
+    this.marker.visible = at !== null;
+    if (at) this.marker.position.set(...at);
+    this.invalidate();
+  }
+
+  pick(clientX: number, clientY: number): Hit | null {
+    const box = this.canvas.getBoundingClientRect();
+    const at = new THREE.Vector2(((clientX - box.left) / box.width) * 2 - 1, 1 - ((clientY - box.top) / box.height) * 2);
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(at, this.camera);
+    const shown = [...this.layers.values()].filter((layer) => layer.mesh.visible && layer.mesh.material.opacity > 0.5);
+    for (const layer of shown) layer.prepareForPicking();
+    const hit = caster
+      .intersectObjects(shown.map((layer) => layer.mesh))
+      .find(({ point }) => !this.clipping || this.plane.distanceToPoint(point) >= 0);
+    if (!hit?.face) return null;
+    const layer = this.layers.get(hit.object.name);
+    if (!layer) return null;
+    const { a, b, c } = hit.face;
+    const positions = layer.mesh.geometry.getAttribute("position");
+    const corner = (i: number): THREE.Vector3 => new THREE.Vector3().fromBufferAttribute(positions, i);
+    const local = layer.mesh.worldToLocal(hit.point.clone());
+    const weights = THREE.Triangle.getBarycoord(local, corner(a), corner(b), corner(c), new THREE.Vector3());
+    return {
+      layer,
+      point: [hit.point.x, hit.point.y, hit.point.z],
+      corners: [a, b, c],
+      weights: weights ? [weights.x, weights.y, weights.z] : [1, 0, 0],
+    };
+  }
+
+  invalidate(): void {
+    if (this.queued) return;
+    this.queued = true;
+    requestAnimationFrame(() => this.draw());
+  }
+
+  /** The picture at any size, independent of the window. */
+  async picture(width: number, height: number, background: string): Promise<Blob> {
+    const ratio = this.renderer.getPixelRatio();
+    this.renderer.setPixelRatio(1);
+    this.setFrustum(width, height);
+    this.renderer.setSize(width, height, false);
+    this.scene.background = new THREE.Color(background);
+    this.renderer.render(this.scene, this.camera);
+    const blob = await new Promise<Blob | null>((done) => this.canvas.toBlob(done, "image/png"));
+    this.scene.background = null;
+    this.renderer.setPixelRatio(ratio);
+    this.resize();
+    if (!blob) throw new Error("the browser could not make the picture");
+    return blob;
+  }
+
+  private draw(): void {
+    this.queued = false;
+    const start = performance.now();
+    this.renderer.render(this.scene, this.camera);
+    if (this.onDrawn) {
+      // reading one pixel waits until the picture is really drawn
+      const gl = this.renderer.getContext();
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+      this.onDrawn(performance.now() - start);
+    }
+  }
+
+  private setFrustum(width: number, height: number): void {
+    const aspect = width / Math.max(1, height);
+    const half = aspect < 1 ? this.halfHeight / aspect : this.halfHeight;
+    Object.assign(this.camera, { left: -half * aspect, right: half * aspect, top: half, bottom: -half });
+    this.camera.updateProjectionMatrix();
+  }
+
+  private resize(): void {
+    const box = (this.canvas.parentElement ?? this.canvas).getBoundingClientRect();
+    if (box.width === 0 || box.height === 0) return;
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.renderer.setSize(box.width, box.height);
+    this.setFrustum(box.width, box.height);
+    this.invalidate();
+  }
+
+  private onKey(event: KeyboardEvent): void {
+    const turns: Record<string, [number, number]> = {
+      ArrowLeft: [-kTurn, 0],
+      ArrowRight: [kTurn, 0],
+      ArrowUp: [0, -kTurn],
+      ArrowDown: [0, kTurn],
+    };
+    const turn = turns[event.key];
+    if (turn) {
+      const arm = this.camera.position.clone().sub(this.controls.target);
+      const side = new THREE.Vector3().crossVectors(this.camera.up, arm).normalize();
+      arm.applyAxisAngle(this.camera.up.clone().normalize(), turn[0]).applyAxisAngle(side, turn[1]);
+      this.camera.position.copy(this.controls.target).add(arm);
+    } else if (event.key === "+" || event.key === "=") {
+      this.camera.zoom *= 1.15;
+    } else if (event.key === "-") {
+      this.camera.zoom /= 1.15;
+    } else {
+      return;
+    }
+    event.preventDefault();
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.invalidate();
+  }
+}
