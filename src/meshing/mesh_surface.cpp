@@ -2,6 +2,8 @@
 
 #include "crease_snapping.h"
 #include "extrude.h"
+#include "mending.h"
+#include "node_freedom.h"
 #include "node_smoothing.h"
 #include "tet_boundary.h"
 #include "worst_elements.h"
@@ -82,10 +84,21 @@ MeshingResult mesh_sheet(const TriMesh& surface, const medial::SurfaceSides& sid
   const SlideGuide guide(surface, sides, faces, options.rim_rounding);
   Extrusion made =
       extrude_within(surface, sides, guide, options, part_of(monitor, "medial grid", 0.0, 0.6));
-  const Index inverted = untangle(made.grid, guide);
+  Index inverted = untangle(made.grid, guide);
+  if (inverted > 0) inverted = untangle_freely(made.grid, guide);
   if (inverted > 0) fail(ErrorCode::below_quality, inverted, " elements stay inverted");
   improve(made.grid, guide, options.improvement_rounds, part_of(monitor, "improve", 0.6, 1.0));
   MeshingResult result;
+  if (options.improvement_rounds > 0) raise_freely(made.grid, guide);
+  const Index dropped = drop_poor_elements(made.grid);
+  if (dropped > 0) {
+    result.report.notes.push_back(
+        join_text(dropped, " poor elements at the boundary were dropped"));
+  }
+  if (const double departure = largest_departure(made.grid, guide); departure > 0.0) {
+    result.report.notes.push_back(
+        join_text("nodes left the surface by up to ", departure, " mm to make elements better"));
+  }
   result.report.method = Method::medial;
   result.report.sheetness = sides.sheetness;
   result.report.layers = options.layers.value_or(1);

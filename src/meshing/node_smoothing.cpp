@@ -1,6 +1,7 @@
 #include "node_smoothing.h"
 
 #include "element_shape.h"
+#include "node_freedom.h"
 
 #include <Eigen/Cholesky>
 
@@ -75,8 +76,6 @@ Model model_at(const Star& star, const Vec3& p, const Aim& aim) {
   return m;
 }
 
-using Directions = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3>;
-
 Vec3 newton_step(const Model& m, const Directions& D) {
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
   using SmallVec = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
@@ -95,16 +94,15 @@ Vec3 newton_step(const Model& m, const Directions& D) {
 }
 
 bool move_node(TetGrid& grid, const SlideGuide& guide, Index v, const Aim& aim, Star& star) {
-  const NodeKind kind = grid.kinds[at(v)];
-  if (is_fixed(kind) || grid.around[at(v)].empty()) return false;
+  if (is_fixed(grid.kinds[at(v)]) || grid.around[at(v)].empty()) return false;
   star.gather(grid, v);
   const Vec3 p = grid.x[at(v)];
   const Model m = model_at(star, p, aim);
   if (m.energy == kInfinity) return false;
-  const Vec3 step = newton_step(m, guide.directions(kind, p));
+  const Vec3 step = newton_step(m, free_directions(grid, guide, v));
   const double enough = m.energy * (1.0 - kLeastGain);
   for (double share = 1.0; share > 0.1; share *= 0.5) {
-    const Vec3 candidate = guide.place(kind, p + share * step);
+    const Vec3 candidate = allowed_place(grid, guide, v, p + share * step);
     if (star.energy(candidate, aim, enough) < enough) {
       grid.x[at(v)] = candidate;
       return true;

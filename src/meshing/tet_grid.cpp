@@ -29,6 +29,7 @@ void TetGrid::remove(Index t) {
 void TetGrid::link() {
   tets.erase(std::remove_if(tets.begin(), tets.end(), [](const Tet& t) { return t[0] < 0; }),
              tets.end());
+  reach.resize(x.size(), 0.0);
   around.assign(x.size(), {});
   for (std::size_t t = 0; t < tets.size(); ++t) {
     for (const Index v : tets[t])

@@ -43,8 +43,9 @@ constexpr bool is_fixed(NodeKind k) {
 struct TetGrid {
   std::vector<Vec3> x;  ///< mm
   std::vector<NodeKind> kinds;
-  std::vector<double> levels;              ///< 0 on the first face, number of layers on the second
-  std::vector<Tet> tets;                   ///< positive volume; removed ones have tet[0] < 0
+  std::vector<double> levels;  ///< 0 on the first face, number of layers on the second
+  std::vector<double> reach;   ///< mm: how far a node may leave where its kind keeps it, mostly 0
+  std::vector<Tet> tets;       ///< positive volume; removed ones have tet[0] < 0
   std::vector<std::vector<Index>> around;  ///< living tets of each node, ascending order not kept
 
   bool alive(Index t) const { return tets[static_cast<std::size_t>(t)][0] >= 0; }

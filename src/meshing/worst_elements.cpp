@@ -1,6 +1,7 @@
 #include "worst_elements.h"
 
 #include "element_shape.h"
+#include "node_freedom.h"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +15,9 @@ constexpr double kFirstStep = 0.2;  // of the mean edge around the node; halved 
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-double rank(const TetGrid& grid, const Tet& t) {
+}  // namespace
+
+double element_rank(const TetGrid& grid, const Tet& t) {
   const Vec3 &a = grid.x[at(t[0])], &b = grid.x[at(t[1])], &c = grid.x[at(t[2])],
              &d = grid.x[at(t[3])];
   const double aspect = aspect_ratio(a, b, c, d);
@@ -24,10 +27,12 @@ double rank(const TetGrid& grid, const Tet& t) {
       {angles.smallest / kSmallAngle, (kPi - angles.largest) / kFlatAngle, aspect / kLowAspect});
 }
 
+namespace {
+
 double worst_around(const TetGrid& grid, Index v, double stop) {
   double worst = kInfinity;
   for (const Index t : grid.around[at(v)]) {
-    worst = std::min(worst, rank(grid, grid.tets[at(t)]));
+    worst = std::min(worst, element_rank(grid, grid.tets[at(t)]));
     if (worst <= stop) return worst;
   }
   return worst;
@@ -42,8 +47,8 @@ double mean_edge(const TetGrid& grid, Index v) {
 }
 
 // the axes and diagonals of the directions a node may slide in, both ways
-std::vector<Vec3> trial_directions(const SlideGuide& guide, NodeKind kind, const Vec3& p) {
-  const auto axes = guide.directions(kind, p);
+std::vector<Vec3> trial_directions(const TetGrid& grid, const SlideGuide& guide, Index v) {
+  const Directions axes = free_directions(grid, guide, v);
   std::vector<Vec3> trials;
   const std::array<int, 3> signs{0, 1, -1};
   const auto sign_range = [&](Eigen::Index axis) { return axis < axes.cols() ? 3U : 1U; };
@@ -62,16 +67,15 @@ std::vector<Vec3> trial_directions(const SlideGuide& guide, NodeKind kind, const
 }
 
 bool raise_node(TetGrid& grid, const SlideGuide& guide, Index v) {
-  const NodeKind kind = grid.kinds[at(v)];
-  if (is_fixed(kind)) return false;
+  if (is_fixed(grid.kinds[at(v)])) return false;
   double best = worst_around(grid, v, 0.0);
   const double before = best;
   double step = kFirstStep * mean_edge(grid, v);
   for (int level = 0; level < 4; ++level, step *= 0.5) {
     const Vec3 centre = grid.x[at(v)];
     Vec3 place = centre;
-    for (const Vec3& d : trial_directions(guide, kind, centre)) {
-      grid.x[at(v)] = guide.place(kind, centre + step * d);
+    for (const Vec3& d : trial_directions(grid, guide, v)) {
+      grid.x[at(v)] = allowed_place(grid, guide, v, centre + step * d);
       const double value = worst_around(grid, v, best);
       if (value > best + 1e-6) {
         best = value;
@@ -89,7 +93,7 @@ Index raise_worst(TetGrid& grid, const SlideGuide& guide) {
   std::vector<std::pair<double, Index>> bad;
   for (std::size_t t = 0; t < grid.tets.size(); ++t) {
     if (grid.tets[t][0] < 0) continue;
-    const double r = rank(grid, grid.tets[t]);
+    const double r = element_rank(grid, grid.tets[t]);
     if (r < 1.0) bad.emplace_back(r, static_cast<Index>(t));
   }
   std::sort(bad.begin(), bad.end());

@@ -5,12 +5,14 @@
 
 namespace coxa::meshing {
 
+/// The least of an element's smallest dihedral angle over 12.5 degrees, 180 degrees less its
+/// largest one over 22 degrees, and its aspect ratio over 0.25; 0 where it is inverted.
+double element_rank(const TetGrid& grid, const Tet& tet);
+
 /// Raises the worst elements: moves the nodes of elements below the limits, by trial steps along
 /// the directions they may slide in, wherever that raises the worst element around the node.
 ///
-/// An element's rank is the least of its smallest dihedral angle over 12.5 degrees, 180 degrees
-/// less its largest one over 22 degrees, and its aspect ratio over 0.25; from 1 on it is left
-/// alone.
+/// Elements of rank 1 are left alone.
 /// @returns how many nodes moved
 Index raise_worst(TetGrid& grid, const SlideGuide& guide);
 
