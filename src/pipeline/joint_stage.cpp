@@ -16,18 +16,32 @@ namespace {
 // about what a joint centre from surfaces is uncertain by; half a millimetre would squeeze thin
 // cartilage by a third, mm
 constexpr double kCentreShift = 0.1;
+constexpr double kTonnePerKilogram = 1e-3;
+
+const char* name_of(Loading loading) {
+  return loading == Loading::joint_force   ? "joint_force"
+         : loading == Loading::body_weight ? "body_weight"
+                                           : "prescribed_pose";
+}
 
 Record wanted_record(const JointRequest& request) {
   Record record;
   record.verb = "joint";
   const JointEntry& j = request.joint;
   record.options = {{"side", std::string(request.side == Side::left ? "left" : "right")},
-                    {"loading", std::string(j.loading == Loading::joint_force ? "joint_force"
-                                                                              : "prescribed_pose")},
+                    {"loading", std::string(name_of(j.loading))},
                     {"force_N", j.force},
                     {"young_mpa", j.youngs_modulus},
                     {"poisson", j.poisson_ratio},
                     {"law", j.law}};
+  if (j.loading == Loading::body_weight) {
+    record.options["percent_body_weight"] = j.percent;
+    record.options["body_mass_kg"] = *request.body_mass;
+  }
+  if (j.direction) {
+    const Vec3& d = *j.direction;
+    record.options["direction"] = join_text(d[0], " ", d[1], " ", d[2]);
+  }
   record.inputs = {{"acetabular_cartilage", io::sha256_of_path(request.acetabular_cartilage)},
                    {"femoral_cartilage", io::sha256_of_path(request.femoral_cartilage)},
                    {"motion", io::sha256_of_path(request.motion / "motion.csv")},
@@ -113,9 +127,18 @@ joint::JointModel read_joint_model(const JointRequest& request, const motion::Bo
 }
 
 joint::LoadCase joint_load(const JointRequest& request, const joint::JointModel& model) {
-  return request.joint.loading == Loading::joint_force
-             ? joint::passive_examination(model, request.joint.force)
-             : joint::prescribed_pose();
+  const JointEntry& j = request.joint;
+  switch (j.loading) {
+    case Loading::prescribed_pose:
+      return joint::prescribed_pose();
+    case Loading::body_weight:
+      return joint::body_weight_load(j.percent, *request.body_mass * kTonnePerKilogram,
+                                     j.direction.value_or(joint::into_socket(model)));
+    case Loading::joint_force:
+      break;
+  }
+  return j.direction ? joint::constant_force(j.force, *j.direction)
+                     : joint::passive_examination(model, j.force);
 }
 
 JointRequest read_joint_request(const fs::path& path) {
@@ -130,6 +153,9 @@ JointRequest read_joint_request(const fs::path& path) {
   }
   request.motion = existing(root, "motion");
   request.joint = read_joint_entry(root);
+  request.body_mass = root.find<double>("body_mass_kg");
+  require(request.joint.loading != Loading::body_weight || request.body_mass,
+          root.where("body_mass_kg"), " is needed for a load in percent of body weight");
   root.finish();
   return request;
 }
@@ -147,10 +173,17 @@ std::string to_toml(const JointRequest& request, const fs::path& folder) {
     text += join_text("hip_bone = \"", relative(request.hip_bone), "\"\nfemur = \"",
                       relative(request.femur), "\"\n");
   }
-  text += join_text("motion = \"", relative(request.motion), "\"\n\n[joint]\nloading = \"",
-                    j.loading == Loading::joint_force ? "joint_force" : "prescribed_pose",
-                    "\"\nforce_N = ", j.force, "\nyoung_mpa = ", j.youngs_modulus,
-                    "\npoisson = ", j.poisson_ratio, "\nlaw = \"", j.law, "\"\n");
+  if (request.body_mass) text += join_text("body_mass_kg = ", *request.body_mass, "\n");
+  text +=
+      join_text("motion = \"", relative(request.motion), "\"\n\n[joint]\nloading = \"",
+                name_of(j.loading), "\"\nforce_N = ", j.force, "\nyoung_mpa = ", j.youngs_modulus,
+                "\npoisson = ", j.poisson_ratio, "\nlaw = \"", j.law, "\"\n");
+  if (j.loading == Loading::body_weight)
+    text += join_text("percent_body_weight = ", j.percent, "\n");
+  if (j.direction) {
+    const Vec3& d = *j.direction;
+    text += join_text("direction = [", d[0], ", ", d[1], ", ", d[2], "]\n");
+  }
   return text;
 }
 

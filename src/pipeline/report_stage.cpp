@@ -236,9 +236,8 @@ void add_frame_table(view::ReportWriter& page, const ResultFrames& frames) {
   page.table(columns, rows, "Frame by frame; all columns are in joint/summary.csv");
 }
 
-void add_anatomy(view::ReportWriter& page, const Subject& subject, const Sources& s,
-                 const fs::path& folder, const Monitor& monitor) {
-  page.heading("Anatomy");
+void add_slices(view::ReportWriter& page, const Subject& subject, const Sources& s,
+                const fs::path& folder, const Monitor& monitor) {
   const shape::Landmarks landmarks =
       subject.landmarks.empty() ? shape::Landmarks{} : io::read_landmarks(subject.landmarks);
   const Volume image =
@@ -246,6 +245,12 @@ void add_anatomy(view::ReportWriter& page, const Subject& subject, const Sources
   const view::Image slices = view::draw_slices(image, s.surfaces, s.artefacts.frames.femur.X_IB.p);
   view::write_png(folder / "slices.png", slices);
   page.picture(slices, "MR slices through the joint centre with the outlines of the structures");
+}
+
+void add_anatomy(view::ReportWriter& page, const Subject& subject, const Sources& s,
+                 const fs::path& folder, const Monitor& monitor) {
+  page.heading("Anatomy");
+  if (!subject.images.empty()) add_slices(page, subject, s, folder, monitor);
   const view::Image surfaces = view::draw_surfaces(s.surfaces);
   view::write_png(folder / "surfaces.png", surfaces);
   page.picture(surfaces, "Surfaces of the bones and cartilages from the front and from behind");

@@ -7,6 +7,7 @@
 #include <coxa/pipeline/motion_stage.h>
 #include <coxa/pipeline/report_stage.h>
 #include <coxa/pipeline/segment_stage.h>
+#include <coxa/pipeline/surface_stage.h>
 
 #include <algorithm>
 #include <iterator>
@@ -36,6 +37,9 @@ class Run {
   std::vector<Record> all() {
     io::write_bytes(out_ / "subject.toml", io::read_bytes(subject_.file));
     add(0, [&](Reuse reuse, const Monitor& monitor) {
+      if (!subject_.surfaces.empty())
+        return run_surface_stage({subject_.surfaces, subject_.side}, out_ / "segment", reuse,
+                                 monitor);
       const SegmentRequest request{
           subject_.images, subject_.side, subject_.landmarks, subject_.atlas, {}};
       return run_segment_stage(request, out_ / "segment", reuse, monitor);
@@ -66,7 +70,8 @@ class Run {
             out_ / "segment" / "hip_bone.vtp",
             out_ / "segment" / "femur.vtp",
             out_ / "motion",
-            subject_.joint};
+            subject_.joint,
+            subject_.body_mass};
   }
 
   template <class Stage>

@@ -75,17 +75,6 @@ Record wanted_record(const SegmentRequest& request) {
   return record;
 }
 
-/// Thickness as a field on the bone-near side of each cartilage: from the bone out to the articular
-/// surface.
-void add_thickness(SurfaceSet& surfaces) {
-  for (const auto& [cartilage, bone] :
-       {std::pair{"femoral_cartilage", "femur"}, {"acetabular_cartilage", "hip_bone"}}) {
-    if (!surfaces.count(cartilage) || !surfaces.count(bone)) continue;
-    surfaces[bone].fields["cartilage_thickness_mm"] =
-        measure::closed_cartilage_thickness(surfaces[bone].mesh, surfaces[cartilage].mesh);
-  }
-}
-
 void add_figures(const segment::SegmentResult& result, Record& record) {
   record.figures["quality"] = result.quality;
   for (const auto& [name, q] : result.structures) {
@@ -143,6 +132,15 @@ Record run_segment_stage(const SegmentRequest& request, const fs::path& folder, 
     record.warnings.insert(record.warnings.end(), result.warnings.begin(), result.warnings.end());
   };
   return run_stage(folder, wanted_record(request), reuse, monitor, body);
+}
+
+void add_thickness(SurfaceSet& surfaces) {
+  for (const auto& [cartilage, bone] :
+       {std::pair{"femoral_cartilage", "femur"}, {"acetabular_cartilage", "hip_bone"}}) {
+    if (!surfaces.count(cartilage) || !surfaces.count(bone)) continue;
+    surfaces[bone].fields["cartilage_thickness_mm"] =
+        measure::closed_cartilage_thickness(surfaces[bone].mesh, surfaces[cartilage].mesh);
+  }
 }
 
 SurfaceSet read_surfaces(const fs::path& folder) {

@@ -12,7 +12,11 @@ namespace {
 // a movement needs a start and an end; more than this is a mistake rather than a wish
 constexpr Index kFewestFrames = 2, kMostFrames = 2000;
 // joint forces beyond ten times a heavy body's weight are a wrong unit
-constexpr double kLargestForce = 15000.0;
+constexpr double kLargestForce = 15000.0, kLargestPercent = 1500.0;
+
+const std::map<std::string, Loading> kLoadings{{"joint_force", Loading::joint_force},
+                                               {"body_weight", Loading::body_weight},
+                                               {"prescribed_pose", Loading::prescribed_pose}};
 
 fs::path existing(const io::Table& table, const std::string& key,
                   const std::optional<fs::path>& path) {
@@ -28,8 +32,17 @@ std::vector<ImageEntry> read_images(const io::Table& root) {
         {existing(table, "path", table.find_path("path")), table.find<std::string>("series")});
     table.finish();
   }
-  require(!images.empty(), root.where("image"), " is needed: a table with the path of an MRI");
   return images;
+}
+
+std::map<std::string, fs::path> read_surface_paths(const io::Table& root) {
+  std::map<std::string, fs::path> surfaces;
+  const auto table = root.find_table("surfaces");
+  if (!table) return surfaces;
+  for (const char* name : {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"})
+    surfaces[name] = existing(*table, name, table->find_path(name));
+  table->finish();
+  return surfaces;
 }
 
 MotionEntry read_motion(const io::Table& root) {
@@ -67,6 +80,14 @@ MeshEntry read_mesh(const io::Table& root) {
 void check_joint(const io::Table& table, const JointEntry& joint) {
   require(joint.force > 0.0 && joint.force <= kLargestForce, table.where("force_N"),
           " must be in (0, ", kLargestForce, "] N, got ", joint.force);
+  require((joint.percent > 0.0) == (joint.loading == Loading::body_weight) &&
+              joint.percent <= kLargestPercent,
+          table.where("percent_body_weight"), " must be in (0, ", kLargestPercent,
+          "] with loading = \"body_weight\", and left out otherwise; got ", joint.percent);
+  require(!joint.direction || joint.direction->norm() > 0.0, table.where("direction"),
+          " must have a length");
+  require(!joint.direction || joint.loading != Loading::prescribed_pose, table.where("direction"),
+          " means nothing with a prescribed pose");
   require(joint.youngs_modulus > 0.0, table.where("young_mpa"), " must be positive, got ",
           joint.youngs_modulus);
   require(joint.poisson_ratio > 0.0 && joint.poisson_ratio < 0.5, table.where("poisson"),
@@ -89,10 +110,12 @@ JointEntry read_joint_entry(const io::Table& root) {
   const auto table = root.find_table("joint");
   if (!table) return joint;
   const auto loading = table->value_or<std::string>("loading", "joint_force");
-  require(loading == "joint_force" || loading == "prescribed_pose", table->where("loading"),
-          " must be \"joint_force\" or \"prescribed_pose\", got \"", loading, "\"");
-  joint.loading = loading == "joint_force" ? Loading::joint_force : Loading::prescribed_pose;
+  require(kLoadings.count(loading), table->where("loading"), " must be \"joint_force\", ",
+          "\"body_weight\" or \"prescribed_pose\", got \"", loading, "\"");
+  joint.loading = kLoadings.at(loading);
   joint.force = table->value_or("force_N", joint.force);
+  joint.percent = table->value_or("percent_body_weight", joint.percent);
+  joint.direction = table->find<Vec3>("direction");
   joint.youngs_modulus = table->value_or("young_mpa", joint.youngs_modulus);
   joint.poisson_ratio = table->value_or("poisson", joint.poisson_ratio);
   joint.law = table->value_or("law", joint.law);
@@ -111,6 +134,10 @@ Subject read_subject(const fs::path& path) {
   require(!subject.body_mass || *subject.body_mass > 0.0, root.where("body_mass_kg"),
           " must be positive");
   subject.images = read_images(root);
+  subject.surfaces = read_surface_paths(root);
+  require(subject.images.empty() != subject.surfaces.empty(), root.where("image"),
+          " is needed: a table with the path of an MRI; or a table [surfaces] with the paths of ",
+          "femur, hip_bone, femoral_cartilage and acetabular_cartilage, and not both");
   if (const auto table = root.find_table("landmarks")) {
     subject.landmarks = existing(*table, "path", table->find_path("path"));
     table->finish();
@@ -123,6 +150,8 @@ Subject read_subject(const fs::path& path) {
   subject.motion = read_motion(root);
   subject.mesh = read_mesh(root);
   subject.joint = read_joint_entry(root);
+  require(subject.joint.loading != Loading::body_weight || subject.body_mass,
+          root.where("body_mass_kg"), " is needed for a load in percent of body weight");
   root.finish();
   return subject;
 }

@@ -165,7 +165,7 @@ CaseFolder::Hip CaseFolder::read_hip() const {
       fs::exists(joint_file) ? pipeline::read_joint_request(joint_file) : joint_request();
   const auto artefacts = pipeline::read_motion_artefacts(request.motion, request.side);
   Hip hip{pipeline::read_joint_model(request, artefacts.frames), {}};
-  hip.load = joint::passive_examination(hip.model, request.joint.force);
+  hip.load = pipeline::joint_load(request, hip.model);
   return hip;
 }
 

@@ -67,6 +67,31 @@ TEST_F(SubjectFile, RefusesValuesOutOfRange) {
             std::string::npos);
   EXPECT_NE(error_of(good_ + "frames = 1\n").find("must be 2 to 2000, got 1"), std::string::npos);
 }
+TEST_F(SubjectFile, TakesSurfacesInPlaceOfAnImageAndNotBeside) {
+  std::string surfaces = "[surfaces]\n";
+  for (const std::string name :
+       {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"}) {
+    io::write_bytes(folder_ / (name + ".ply"), "surface");
+    surfaces += name + " = \"" + name + ".ply\"\n";
+  }
+  const std::string motion = "[motion]\npattern = \"flexion\"\n";
+  const Subject s = read("side = \"left\"\n" + surfaces + motion);
+  EXPECT_EQ(s.surfaces.at("hip_bone"), folder_ / "hip_bone.ply");
+  EXPECT_TRUE(s.images.empty());
+  EXPECT_NE(error_of(good_ + surfaces).find("not both"), std::string::npos);
+  EXPECT_NE(error_of("side = \"left\"\n" + motion).find("[surfaces]"), std::string::npos);
+}
+TEST_F(SubjectFile, TakesALoadInPercentOfBodyWeight) {
+  const std::string load =
+      "[joint]\nloading = \"body_weight\"\npercent_body_weight = 233\ndirection = [0, 1, 0]\n";
+  const Subject s = read("body_mass_kg = 70\n" + good_ + load);
+  EXPECT_EQ(s.joint.loading, Loading::body_weight);
+  EXPECT_DOUBLE_EQ(s.joint.percent, 233.0);
+  EXPECT_EQ(*s.joint.direction, Vec3(0, 1, 0));
+  EXPECT_NE(error_of(good_ + load).find("body_mass_kg"), std::string::npos);
+  EXPECT_NE(error_of(good_ + "[joint]\npercent_body_weight = 233\n").find("left out otherwise"),
+            std::string::npos);
+}
 TEST_F(SubjectFile, WantsASide) {
   EXPECT_NE(error_of("side = \"port\"\n").find("must be \"left\" or \"right\""), std::string::npos);
 }

@@ -23,6 +23,13 @@ struct LoadCase {
 /// @param newtons > 0
 LoadCase passive_examination(const JointModel& model, double newtons = 500.0);
 
+/// A constant force along `direction_P` (pelvis axes, femur onto socket, any length).
+/// @param newtons > 0
+LoadCase constant_force(double newtons, const Vec3& direction_P);
+
+/// Direction of the passive examination's force in pelvis axes, unit.
+Vec3 into_socket(const JointModel& model);
+
 /// A force of `percent` of body weight along `direction_P` (pelvis axes, femur onto socket, any
 /// length).
 /// @param body_mass tonne, > 0   @param percent > 0

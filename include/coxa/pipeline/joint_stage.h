@@ -18,6 +18,7 @@ struct JointRequest {
   std::filesystem::path hip_bone, femur;  ///< surfaces; both empty: no bony limit
   std::filesystem::path motion;           ///< folder of a motion stage
   JointEntry joint;
+  std::optional<double> body_mass = std::nullopt;  ///< kg, for a load in percent of body weight
 };
 
 /// @throws Error bad_input for a missing or unknown key, a value out of range, or a file that does

@@ -31,6 +31,10 @@ Record run_segment_stage(const SegmentRequest& request, const std::filesystem::p
 Volume read_image(const ImageEntry& entry, const shape::Landmarks& landmarks,
                   const Monitor& monitor);
 
+/// Adds the cartilages' thickness to their bones as a field: from the bone out to the articular
+/// surface, mm.
+void add_thickness(SurfaceSet& surfaces);
+
 /// The surfaces a segment stage left in `folder`, by structure.
 /// @throws Error bad_file if there is none
 SurfaceSet read_surfaces(const std::filesystem::path& folder);

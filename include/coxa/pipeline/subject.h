@@ -4,6 +4,7 @@
 #include <coxa/io/config.h>
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,11 +26,15 @@ struct MotionEntry {
   Index frames = 14;  ///< frames that are simulated, spread evenly over the movement, >= 2
 };
 
-enum class Loading { joint_force, prescribed_pose };
+enum class Loading { joint_force, body_weight, prescribed_pose };
 
 struct JointEntry {
   Loading loading = Loading::joint_force;
-  double force = 500.0;          ///< N, of the joint force
+  double force = 500.0;  ///< N, of the joint force
+  double percent = 0.0;  ///< of body weight, with Loading::body_weight; > 0
+  /// Of the joint force, femur onto socket, pelvis axes (anterior, superior, right); nullopt: into
+  /// the socket along its axis.
+  std::optional<Vec3> direction;
   double youngs_modulus = 12.0;  ///< MPa
   double poisson_ratio = 0.42;
   std::string law = "corotational";  ///< or st_venant_kirchhoff
@@ -46,7 +51,9 @@ struct Subject {
   std::string name;
   Side side = Side::right;
   std::optional<double> body_mass;  ///< kg
-  std::vector<ImageEntry> images;   ///< at least one
+  std::vector<ImageEntry> images;   ///< none where surfaces are given
+  std::map<std::string, std::filesystem::path>
+      surfaces;                     ///< by structure, in place of images: a hip segmented elsewhere
   std::filesystem::path landmarks;  ///< `.mrk.json` or CSV
   std::filesystem::path atlas;      ///< the shipped one where the file names none
   MotionEntry motion;

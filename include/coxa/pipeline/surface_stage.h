@@ -1,0 +1,25 @@
+#pragma once
+
+#include <coxa/core/monitor.h>
+#include <coxa/core/types.h>
+#include <coxa/pipeline/stage.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace coxa::pipeline {
+
+struct SurfaceRequest {
+  std::map<std::string, std::filesystem::path> surfaces;  ///< by structure
+  Side side = Side::right;
+};
+
+/// Takes surfaces segmented elsewhere in place of a segment stage: checked, repaired where they
+/// need it (with what was changed as warnings), written as a segment stage writes them, with the
+/// record `segment.json`.
+/// @throws Error bad_mesh naming the structure and the fault for a surface that cannot be repaired
+Record run_surface_stage(const SurfaceRequest& request, const std::filesystem::path& folder,
+                         Reuse reuse, const Monitor& monitor);
+
+}  // namespace coxa::pipeline

@@ -1,0 +1,57 @@
+#include <coxa/pipeline/run.h>
+
+#include <coxa/core/error.h>
+#include <coxa/io/files.h>
+#include <coxa/io/surfaces.h>
+#include <coxa/pipeline/surface_stage.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/small_run.h"
+
+namespace coxa::pipeline {
+namespace fs = std::filesystem;
+
+const char* const kNames[] = {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"};
+
+/// A subject file beside the small hip's surfaces that takes them in place of an image.
+fs::path subject_of(const test::SmallRun& small, const std::string& joint) {
+  std::string text = "side = \"right\"\nbody_mass_kg = 60.0\n[surfaces]\n";
+  for (const std::string name : kNames) text += name + " = \"segment/" + name + ".vtp\"\n";
+  text += "[motion]\npattern = \"flexion\"\nframes = 2\n" + joint;
+  io::write_bytes(small / "given.toml", text);
+  return small / "given.toml";
+}
+
+TEST(SurfaceRun, GoesFromGivenSurfacesToTheReport) {
+  const test::SmallRun small("surface_run");
+  const Subject subject = read_subject(
+      subject_of(small, "[joint]\nloading = \"body_weight\"\npercent_body_weight = 50\n"));
+  const auto records = run_subject(subject, small / "out", {}, {});
+  ASSERT_EQ(records.size(), 5U);
+  EXPECT_EQ(records[0].verb, "segment");
+  EXPECT_GT(std::get<double>(records[0].figures.at("femur_volume_mm3")), 0.0);
+  // 50 % of 60 kg times 9.80665 m/s2
+  EXPECT_NE(std::get<std::string>(records[3].figures.at("load")).find("294.2 N"), std::string::npos)
+      << std::get<std::string>(records[3].figures.at("load"));
+  EXPECT_GE(std::get<std::int64_t>(records[3].figures.at("frames_converged")), 1);
+  EXPECT_TRUE(fs::exists(small / "out" / "report" / "report.html"));
+  EXPECT_FALSE(fs::exists(small / "out" / "report" / "slices.png"));
+}
+
+TEST(SurfaceRun, NamesTheStructureThatCannotBeUsed) {
+  const test::SmallRun small("surface_run_bad");
+  TriMesh open = io::read_surface(small / "segment/femur.vtp");
+  open.triangles.conservativeResize(open.n_triangles() / 2, 3);
+  io::write_surface(small / "segment/femur.vtp", open);
+  const Subject subject = read_subject(subject_of(small, ""));
+  try {
+    run_surface_stage({subject.surfaces, subject.side}, small / "out", Reuse::never, {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_mesh);
+    EXPECT_EQ(std::string(error.what()).find("femur ("), 0U) << error.what();
+  }
+  EXPECT_FALSE(fs::exists(small / "out"));
+}
+
+}  // namespace coxa::pipeline
