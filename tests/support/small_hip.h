@@ -1,0 +1,93 @@
+#pragma once
+
+#include <coxa/mesh/tet_mesh.h>
+#include <coxa/mesh/tri_mesh.h>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "joint/layers.h"
+
+/// A hip of spheres and cylinders, small enough that every stage of a run takes about a second.
+namespace coxa::test {
+
+/// Closed surface of revolution about the x axis through `profile` (x, radius), outward.
+inline TriMesh revolved(const std::vector<Vec2>& profile, Index around) {
+  const auto rings = static_cast<Index>(profile.size());
+  TriMesh mesh;
+  mesh.points.resize(rings * around + 2, 3);
+  for (Index r = 0; r < rings; ++r) {
+    const Vec2& p = profile[static_cast<std::size_t>(r)];
+    for (Index k = 0; k < around; ++k) {
+      const double turn = 2.0 * kPi * k / around;
+      mesh.points.row(r * around + k) << p.x(), p.y() * std::cos(turn), p.y() * std::sin(turn);
+    }
+  }
+  const Index first = rings * around, last = first + 1;
+  mesh.points.row(first) << profile.front().x(), 0, 0;
+  mesh.points.row(last) << profile.back().x(), 0, 0;
+  std::vector<Eigen::RowVector3i> triangles;
+  for (Index k = 0; k < around; ++k) {
+    const Index next = (k + 1) % around;
+    triangles.emplace_back(first, next, k);
+    triangles.emplace_back(last, (rings - 1) * around + k, (rings - 1) * around + next);
+    for (Index r = 0; r + 1 < rings; ++r) {
+      const Index a = r * around + k, b = r * around + next;
+      triangles.emplace_back(a, b, b + around);
+      triangles.emplace_back(a, b + around, a + around);
+    }
+  }
+  mesh.triangles.resize(static_cast<Index>(triangles.size()), 3);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    mesh.triangles.row(static_cast<Index>(t)) = triangles[t];
+  return mesh;
+}
+
+// of the small hip, mm and rad; its joint centre is the origin, LPS axes, a right hip
+inline constexpr double kHeadRadius = 23.0, kNeckRadius = 14.0;
+inline constexpr double kSocketRadius = 26.0, kSocketAngle = radians(60.0);
+inline constexpr double kNeckTilt = radians(45.0);  ///< below the horizontal, in the coronal plane
+
+/// A head on a cylindrical neck that points to the right (of the patient) and down.
+inline TriMesh small_femur(double neck_length = 45.0) {
+  std::vector<Vec2> profile;
+  const double neck_from = std::acos(-std::sqrt(1.0 - std::pow(kNeckRadius / kHeadRadius, 2)));
+  for (double a = 0.03; a < neck_from; a += 0.06)
+    profile.emplace_back(-kHeadRadius * std::cos(a), kHeadRadius * std::sin(a));
+  for (double x = 18.5; x <= neck_length; x += 1.5) profile.emplace_back(x, kNeckRadius);
+  TriMesh femur = revolved(profile, 60);
+  // the axis of revolution to (-cos, 0, -sin): a turn about y, which keeps the orientation
+  Mat3 R;
+  R << -std::cos(kNeckTilt), 0, std::sin(kNeckTilt), 0, 1, 0, -std::sin(kNeckTilt), 0,
+      -std::cos(kNeckTilt);
+  femur.points *= R.transpose();
+  return femur;
+}
+
+/// The surface of a tetrahedral mesh, its vertices numbered anew.
+inline TriMesh surface_of(const TetMesh& tets) {
+  std::map<Index, Index> number;
+  for (Index f = 0; f < tets.facets.rows(); ++f)
+    for (int c = 0; c < 3; ++c)
+      number.emplace(tets.facets(f, c), static_cast<Index>(number.size()));
+  TriMesh mesh;
+  mesh.points.resize(static_cast<Index>(number.size()), 3);
+  for (const auto& [old, now] : number) mesh.points.row(now) = tets.points.row(old);
+  mesh.triangles = tets.facets.unaryExpr([&](Index v) { return number.at(v); });
+  return mesh;
+}
+
+inline TetMesh small_socket_cartilage() {
+  return cap_shell(kSocketRadius, kSocketRadius - 1.5, kSocketAngle, 10, 1);
+}
+inline TetMesh small_head_cartilage() {
+  return cap_shell(kHeadRadius, kSocketRadius - 1.5, radians(75.0), 12, 1);
+}
+inline TriMesh small_hip_bone() {
+  return surface_of(cap_shell(kSocketRadius + 8.0, kSocketRadius, kSocketAngle, 14, 1));
+}
+
+}  // namespace coxa::test
