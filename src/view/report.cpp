@@ -19,7 +19,7 @@ body { margin: 0; background: var(--paper); color: var(--ink); font: 16px/1.5 sy
 main { max-width: 1100px; margin: 0 auto; padding: 1.5rem; }
 h1 { margin: 0 0 .2rem; } h2 { margin-top: 2.2rem; border-bottom: 1px solid var(--line); }
 .subtitle, figcaption, caption { color: var(--faint); } caption { text-align: left; }
-.scroll { overflow-x: auto; } .scroll table { width: max-content; } .scroll td { max-width: 42rem; }
+.scroll { overflow-x: auto; } .scroll td:last-child { min-width: 18rem; }
 table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums; }
 th, td { border: 1px solid var(--line); padding: .3rem .7rem; text-align: left; } th { background: var(--shade); }
 figure { margin: 1rem 0; overflow-x: auto; } img { max-width: 100%; height: auto; background: #fff; border-radius: 4px; }
