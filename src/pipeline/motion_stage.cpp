@@ -51,6 +51,8 @@ Record wanted_record(const Subject& subject, const fs::path& segment_folder) {
   record.inputs["segment"] = record_key(read_record(segment_folder / "segment.json"));
   if (!subject.landmarks.empty())
     record.inputs["landmarks"] = io::sha256_of_path(subject.landmarks);
+  if (subject.motion.from) record.options["from_s"] = *subject.motion.from;
+  if (subject.motion.to) record.options["to_s"] = *subject.motion.to;
   if (subject.motion.pattern.empty()) {
     record.inputs["markers"] = io::sha256_of_path(subject.motion.markers);
     if (!subject.motion.config.empty())
@@ -61,16 +63,24 @@ Record wanted_record(const Subject& subject, const fs::path& segment_folder) {
   return record;
 }
 
-/// `count` frames spread evenly over the motion, first and last among them.
-motion::HipMotion thinned(const motion::HipMotion& all, Index count) {
-  if (all.n_frames() <= count) return all;
+/// At most `entry.frames` frames spread evenly over the part of the motion that the entry chooses,
+/// its first and last among them.
+motion::HipMotion thinned(const motion::HipMotion& all, const MotionEntry& entry) {
+  const auto begin =
+      std::lower_bound(all.time.begin(), all.time.end(), entry.from.value_or(-kInfinity));
+  const auto end = std::upper_bound(begin, all.time.end(), entry.to.value_or(kInfinity));
+  const auto first = begin - all.time.begin(), n = end - begin;
+  require(n > 0, "from_s and to_s leave no frame: the recording lasts from ", all.time.front(),
+          " to ", all.time.back(), " s");
+  const auto count = std::min<std::ptrdiff_t>(entry.frames, n);
   motion::HipMotion few;
   few.method = all.method;
   few.warnings = all.warnings;
   few.head_lab.resize(all.head_lab.rows() > 0 ? count : 0, 3);
   for (Index i = 0; i < count; ++i) {
-    const auto k = static_cast<std::size_t>(
-        std::lround(static_cast<double>(i) * (all.n_frames() - 1) / (count - 1)));
+    const double share = count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0.0;
+    const auto k =
+        static_cast<std::size_t>(first + std::lround(share * static_cast<double>(n - 1)));
     few.time.push_back(all.time[k]);
     few.angles.push_back(all.angles[k]);
     few.X_PF.push_back(all.X_PF[k]);
@@ -90,7 +100,7 @@ motion::HipMotion make_motion(const Subject& subject, const fs::path& folder,
       track_markers(subject.motion.markers, subject.motion.config, subject.side, monitor);
   io::write_motion(folder / "tracked.csv", tracked.result.motion);
   io::write_residuals(folder / "residuals.csv", tracked.result);
-  return thinned(tracked.result.motion, subject.motion.frames);
+  return thinned(tracked.result.motion, subject.motion);
 }
 
 void add_figures(const motion::JointCentreResult& centre, const motion::BoneFrames& frames,

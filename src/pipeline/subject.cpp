@@ -55,9 +55,15 @@ MotionEntry read_motion(const io::Table& root) {
   if (const auto config = table->find_path("config"))
     motion.config = existing(*table, "config", config);
   motion.frames = table->value_or<Index>("frames", motion.frames);
+  motion.from = table->find<double>("from_s");
+  motion.to = table->find<double>("to_s");
   table->finish();
   require(motion.pattern.empty() != motion.markers.empty(), root.where("motion"),
           " must give either a pattern or markers, and not both");
+  require(motion.pattern.empty() || (!motion.from && !motion.to), table->where("from_s"),
+          " and to_s choose a part of a recording; a pattern is simulated whole");
+  require(!motion.from || !motion.to || *motion.from < *motion.to, table->where("to_s"),
+          " must be later than from_s");
   require(kFewestFrames <= motion.frames && motion.frames <= kMostFrames, table->where("frames"),
           " must be ", kFewestFrames, " to ", kMostFrames, ", got ", motion.frames);
   return motion;

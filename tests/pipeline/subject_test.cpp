@@ -60,6 +60,13 @@ TEST_F(SubjectFile, WantsEitherAPatternOrMarkers) {
   EXPECT_NE(error_of(good_ + "markers = \"t1.nii.gz\"\n").find("either a pattern or markers"),
             std::string::npos);
 }
+TEST_F(SubjectFile, TakesAPartOfARecordingButNotOfAPattern) {
+  const std::string recorded =
+      "side = \"left\"\n[image]\npath = \"t1.nii.gz\"\n[motion]\nmarkers = \"t1.nii.gz\"\n";
+  EXPECT_DOUBLE_EQ(*read(recorded + "from_s = 0.5\nto_s = 2\n").motion.to, 2.0);
+  EXPECT_NE(error_of(recorded + "from_s = 2\nto_s = 1\n").find("later than"), std::string::npos);
+  EXPECT_NE(error_of(good_ + "from_s = 1\n").find("simulated whole"), std::string::npos);
+}
 TEST_F(SubjectFile, RefusesValuesOutOfRange) {
   EXPECT_NE(error_of(good_ + "[joint]\npoisson = 0.5\n").find("must be in (0, 0.5), got 0.5"),
             std::string::npos);
