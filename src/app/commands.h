@@ -17,6 +17,9 @@ void add_compare(CLI::App& app, Context& context);
 void add_phantom(CLI::App& app, Context& context);
 void add_atlas(CLI::App& app, Context& context);
 void add_check(CLI::App& app, Context& context);
+void add_measure(CLI::App& app, Context& context);
+void add_rom(CLI::App& app, Context& context);
+void add_config(CLI::App& app, Context& context);
 void add_view(CLI::App& app, Context& context);
 
 }  // namespace coxa::app

@@ -90,6 +90,8 @@ void Context::print_result(const std::string& where, const pipeline::Record& rec
   for (const auto& [key, value] : record.figures) fmt::print("  {:<44} {}\n", key, as_text(value));
 }
 
+void Context::print_text(const std::string& text) { fmt::print("{}", text); }
+
 void Context::say(const std::string& line) {
   if (progress_) progress_->finish_line();
   if (!common.quiet && !common.json) fmt::print("{}\n", line);

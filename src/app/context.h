@@ -35,6 +35,8 @@ class Context {
   void log_record(const pipeline::Record& record);
   /// Prints the closing lines of a verb: where the result is, and its figures.
   void print_result(const std::string& where, const pipeline::Record& record);
+  /// The verb's result itself, as it is.
+  void print_text(const std::string& text);
   /// One line for people; nothing with --quiet or --json.
   void say(const std::string& line);
   /// Where something can be reached, printed at once: {"address": …} with --json.

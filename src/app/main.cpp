@@ -26,11 +26,14 @@ void add_verbs(CLI::App& app, Context& context) {
   add_mesh(app, context);
   add_track(app, context);
   add_simulate(app, context);
+  add_measure(app, context);
+  add_rom(app, context);
   add_report(app, context);
   add_compare(app, context);
   add_phantom(app, context);
   add_atlas(app, context);
   add_check(app, context);
+  add_config(app, context);
   add_view(app, context);
 }
 

@@ -5,6 +5,7 @@
 #include <coxa/measure/hip_angles.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -16,6 +17,10 @@ constexpr Index kRimBins = 36;
 // of them at least this many must hold a part of the socket
 constexpr Index kLeastRim = 12;
 constexpr int kRimRounds = 4;
+// alpha angles are looked for up to here: beyond lies the part of the head that meets the socket
+constexpr double kLargestAlpha = radians(90.0);
+// a head that is no exact sphere leaves it only beyond so many of its own deviations
+constexpr double kDeviations = 2.0;
 
 /// The point farthest towards the opening in every direction about the axis that has any.
 Points rim_points(const TriMesh& socket, const Vec3& centre, const Vec3& axis) {
@@ -48,16 +53,30 @@ void measure_alpha(const TriMesh& femur, const Sphere& head, const motion::Proxi
   if (three.dot(anterior) < 0.0) three = -three;
   Vec3 twelve = neck.cross(three).normalized();
   if (twelve.dot(axes.shaft_direction) < 0.0) twelve = -twelve;
+  AlphaAngleOptions options;
+  options.tolerance = std::max(options.tolerance, kDeviations * head.rms);
+  options.largest = kLargestAlpha;
+  Index unclear = 0;
   for (Index hour = 0; hour < 12; ++hour) {
     const double turn = 2.0 * kPi * hour / 12.0;
-    const double alpha =
-        alpha_angle(femur, head, neck, std::cos(turn) * twelve + std::sin(turn) * three);
+    double alpha =
+        alpha_angle(femur, head, neck, std::cos(turn) * twelve + std::sin(turn) * three, options);
+    // outside from the beginning: the sphere is not this side's, and no angle can be told
+    if (alpha >= kLargestAlpha) {
+      alpha = kNaN;
+      ++unclear;
+    }
     result.alpha_angle[static_cast<std::size_t>(hour)] = alpha;
     if (!(alpha <= result.largest_alpha_angle)) {
       if (std::isnan(alpha)) continue;
       result.largest_alpha_angle = alpha;
       result.largest_alpha_hour = hour;
     }
+  }
+  if (unclear > 0) {
+    result.notes.push_back(join_text(unclear, " of 12 alpha angles cannot be told: the head lies ",
+                                     options.tolerance,
+                                     " mm outside its sphere 90 degrees from the neck"));
   }
 }
 

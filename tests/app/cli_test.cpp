@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "app/command.h"
+#include "pipeline/small_run.h"
 #include "support/shapes.h"
 
 namespace coxa {
@@ -59,6 +60,25 @@ TEST_F(CommandLine, RefusesASolidBodyAndSaysWhy) {
   EXPECT_EQ(outcome.exit_code, 5);
   EXPECT_TRUE(outcome.says("no sheet")) << outcome.output;
   EXPECT_FALSE(fs::exists(folder_ / "ball.vtu"));
+}
+TEST_F(CommandLine, MeasuresAHipAndItsRangeOfMotion) {
+  const test::SmallRun run("cli_measure");
+  const std::string folder = (run / "").string();
+  const Outcome measured = coxa_run("measure --quiet " + folder);
+  EXPECT_EQ(measured.exit_code, 0) << measured.output;
+  EXPECT_TRUE(fs::exists(run / "measure" / "measure.json"));
+  const Outcome moved = coxa_run("rom --step 4 " + folder);
+  EXPECT_EQ(moved.exit_code, 0) << moved.output;
+  EXPECT_TRUE(moved.says("flexion_end") && moved.says("bones touch")) << moved.output;
+  EXPECT_NE(io::read_bytes(run / "rom" / "rom.json").find("\"step_deg\": 4"), std::string::npos);
+  EXPECT_EQ(coxa_run("rom --step 0 " + folder).exit_code, 2);
+  EXPECT_EQ(coxa_run("measure " + path("")).exit_code, 3);
+}
+TEST_F(CommandLine, PrintsItsDefaults) {
+  const Outcome toml = coxa_run("config"), json = coxa_run("config --json");
+  EXPECT_EQ(toml.exit_code, 0);
+  EXPECT_TRUE(toml.says("[joint]\nforce_N = 500.0\n")) << toml.output;
+  EXPECT_TRUE(json.says("\"joint.force_N\":500.0")) << json.output;
 }
 TEST_F(CommandLine, SaysWhatAFileIs) {
   io::write_surface(folder_ / "shell.ply", test::lunate_shell());

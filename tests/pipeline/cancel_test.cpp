@@ -3,6 +3,7 @@
 #include <coxa/io/atlas_file.h>
 #include <coxa/pipeline/atlas_stage.h>
 #include <coxa/pipeline/joint_stage.h>
+#include <coxa/pipeline/measure_stage.h>
 #include <coxa/pipeline/mesh_stage.h>
 #include <coxa/pipeline/motion_stage.h>
 #include <coxa/pipeline/report_stage.h>
@@ -105,6 +106,14 @@ TEST(Cancelled, ReportLeavesNothing) {
   const fs::path out = run() / "report";
   expect_nothing_after_cancelling(out, [&](const Monitor& monitor) {
     run_report_stage(subject(), run() / "", out, Reuse::never, monitor);
+  });
+}
+TEST(Cancelled, MeasureAndRomLeaveNothing) {
+  expect_nothing_after_cancelling(run() / "measure", [&](const Monitor& monitor) {
+    run_measure_stage(run() / "", {}, Reuse::never, monitor);
+  });
+  expect_nothing_after_cancelling(run() / "rom", [&](const Monitor& monitor) {
+    run_rom_stage(run() / "", {}, Reuse::never, monitor);
   });
 }
 TEST(Cancelled, PhantomLeavesNothing) {

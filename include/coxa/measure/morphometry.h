@@ -31,7 +31,8 @@ struct Morphometry {
 
 /// Measures femur and acetabulum from their surfaces.
 ///
-/// The head is the joint centre's sphere. The neck's and the shaft's axes come from cross-sections.
+/// The head is the joint centre's sphere; its contour leaves it where it is farther outside than
+/// 0.75 mm and twice the rms of the fit. The neck's and the shaft's axes come from cross-sections.
 /// The acetabulum is the surface of its cartilage: its lateral edge is where the weight-bearing
 /// zone ends, its opening the plane through the outer rim of the horseshoe. Femoral version needs
 /// the epicondyles: a femur frame from anything else gives NaN.
