@@ -29,6 +29,10 @@ constexpr double kContactReach = 1.5;
 /// Only sides that look at each other push: the far side of a thin sheet does not.
 constexpr double kContactFacing = 0.3;
 
+/// Confidence of a good match. The model is fitted with the cubes of the confidences: places that
+/// found something else must not outvote what the others say of them.
+constexpr double kGoodMatch = 0.7;
+
 using Contacts = std::vector<std::unique_ptr<collide::SurfaceContact>>;
 
 /// mm², mean area around a vertex.
@@ -46,6 +50,12 @@ const shape::ProfileSet& profiles_for(const Body& body, const std::string& contr
     if (set.contrast == contrast) return set;
   }
   fail(ErrorCode::bad_input, "the atlas has no '", contrast, "' profiles for ", body.model->name);
+}
+
+const ProfileKinds* kinds_for(const Body& body, const std::string& contrast) {
+  if (!body.prepared) return nullptr;
+  const auto found = body.prepared->kinds.find(contrast);
+  return found == body.prepared->kinds.end() ? nullptr : &found->second;
 }
 
 /// The displacement the image asks for at the finest vertices, regularised.
@@ -108,8 +118,9 @@ void update_by_step(VecX& x, const std::vector<LevelForces>& levels, Contacts& c
 
 /// Refits the statistical model to where the image pulls the body.
 void update_fit(Body& body, const Points& field, const Resolution& resolution) {
-  body.fit =
-      fit_model(*body.model, body.points + field, body.match.confidence, resolution.model_noise);
+  const SmoothModes* smooth = resolution.smooth && body.prepared ? &body.prepared->smooth : nullptr;
+  const VecX certain = body.match.confidence.array().cube() / (kGoodMatch * kGoodMatch);
+  body.fit = fit_model(*body.model, body.points + field, certain, resolution.model_noise, smooth);
 }
 
 }  // namespace
@@ -126,7 +137,8 @@ ProfileMatch match_body(const Body& body, std::span<const PreparedImage> images,
   VecX reliability;
   for (const PreparedImage& image : images) {
     const shape::ProfileSet& reference = profiles_for(body, image.contrast);
-    ProfileScores more = score_profiles(image, body.points, normals, reference, search);
+    ProfileScores more = score_profiles(image, body.points, normals, reference, search,
+                                        kinds_for(body, image.contrast));
     if (reliability.size() == 0) {
       scores = std::move(more);
       reliability = reference.reliability;
@@ -159,7 +171,7 @@ int update_bodies(std::vector<Body>& bodies, const Surroundings& surroundings,
       const Points normals = simplex_normals(finest_mesh(body));
       const Points field = regularised_field(body, normals, resolution);
       update_fit(body, field, resolution);
-      if (resolution.rigid) continue;
+      if (resolution.fit_only) continue;
       const Points positions = level_points(body.model->hierarchy, level_of(body, resolution),
                                             body.points, body.fit.pose);
       for (Index v = 0; v < levels[b].n(); ++v) {
@@ -169,7 +181,7 @@ int update_bodies(std::vector<Body>& bodies, const Surroundings& surroundings,
                         options.minimum_gap);
     }
     const VecX start = x;
-    if (!resolution.rigid) {
+    if (!resolution.fit_only) {
       Contacts contacts = make_contacts(levels, surroundings, options);
       update_by_step(x, levels, contacts);
     }
@@ -178,7 +190,7 @@ int update_bodies(std::vector<Body>& bodies, const Surroundings& surroundings,
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       Body& body = bodies[b];
       Points change;
-      if (resolution.rigid) {
+      if (resolution.fit_only) {
         change = body.fit.points - body.points;
       } else {
         const Points level_change = Eigen::Map<const Points>(

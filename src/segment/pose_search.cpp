@@ -23,6 +23,8 @@ constexpr double kShareInView = 0.5;
 /// Places that are refined, and how far apart they are, mm.
 constexpr std::size_t kRefined = 8;
 constexpr double kApart = 18.0;
+/// mm. How far off a place of the grid, and the borders there, may be.
+constexpr double kRefinedRange = 12.0;
 /// rad. Patients lie on the table within about this of the atlas' orientation.
 constexpr double kTurn = 0.26;
 
@@ -140,17 +142,17 @@ std::vector<Body> refined(const Candidate& candidate,
     Body body;
     body.model = bone;
     body.points = transformed(bone->hierarchy.levels.back().points, candidate.pose);
-    body.fit = {body.points, {1.0, candidate.pose}, VecX::Zero(bone->shape.deviations.size())};
+    body.fit = {body.points, {1.0, candidate.pose}, VecX::Zero(bone->shape.deviations.size()), 0.0};
     bodies.push_back(std::move(body));
   }
   image.contrast = candidate.contrast;
   const Resolution resolution{.coarsening = 3,
-                              .range = options.search_range,
+                              .range = kRefinedRange,
                               .image_sigma = kSmoothing,
                               .window = 5.0,
                               .score_smoothing = 12,
                               .model_noise = 3.0,
-                              .rigid = true};
+                              .fit_only = true};
   const std::vector<Obstacles> none(bodies.size());
   const std::vector<TriMesh> no_host(bodies.size());
   SegmentOptions few = options;

@@ -18,6 +18,8 @@ constexpr double kSeenShare = 0.75;
 constexpr double kTrainedVariance = 0.16;
 /// A step of this share of the intensity range over two samples counts as a full border.
 constexpr double kFullStep = 0.35;
+/// Kinds with a smaller share about a vertex are not expected there.
+constexpr double kCommonShare = 0.15;
 
 /// Blur along the normal: a box of one voxel and its linear interpolation, variance spacing²/4 per
 /// axis.
@@ -111,6 +113,26 @@ VecX sample_line(const Volume& volume, const Vec3& start, const Vec3& normal, do
   return samples;
 }
 
+/// Scores of one reference at all shifts of vertex v; the better of these and those there are.
+void update_with(const Reference& r, const VecX& line, double intensity_range, Index n_inside,
+                 const ProfileSearch& search, Index v, ProfileScores& scores) {
+  const Index R = scores.n_each_way, last = static_cast<Index>(line.size()) - 1;
+  for (Index s = 0; s <= 2 * R; ++s) {
+    const double c = correlation(r, line, s, kFlatShare * intensity_range);
+    const Index centre = s + n_inside;
+    if (std::isnan(c) || std::isnan(line[centre])) continue;
+    const double step = (line[std::min(last, centre + 1)] - line[std::max<Index>(0, centre - 1)]) /
+                        (kFullStep * intensity_range);
+    const double border = std::isnan(step) ? 0.0 : r.slope * std::clamp(step, -1.0, 1.0);
+    const double relative = R > 0 ? (s - R) / static_cast<double>(R) : 0.0;
+    const double score =
+        c + search.gradient_weight * border - search.shift_penalty * relative * relative;
+    if (score <= scores.score(v, s)) continue;  // false where there is none yet
+    scores.score(v, s) = score;
+    scores.correlation(v, s) = c;
+  }
+}
+
 /// Place of the largest value of three equally spaced ones relative to the middle, in steps.
 double parabola_offset(double before, double middle, double after) {
   const double bend = before - 2.0 * middle + after;
@@ -122,7 +144,7 @@ double parabola_offset(double before, double middle, double after) {
 
 ProfileScores score_profiles(const PreparedImage& image, const Points& positions,
                              const Points& normals, const shape::ProfileSet& reference,
-                             const ProfileSearch& search) {
+                             const ProfileSearch& search, const ProfileKinds* kinds) {
   const Index n_profile = static_cast<Index>(reference.mean.cols());
   const Index n_outside = n_profile - 1 - reference.n_inside;
   ProfileScores scores;
@@ -131,29 +153,25 @@ ProfileScores score_profiles(const PreparedImage& image, const Points& positions
   const Index R = scores.n_each_way, V = static_cast<Index>(positions.rows());
   scores.score = MatX::Constant(V, 2 * R + 1, kNaN);
   scores.correlation = scores.score;
-  const double flat = kFlatShare * image.intensity_range;
 
   parallel_for(V, [&](Index v) {
     const Vec3 normal = normals.row(v).transpose();
     const VecX line = sample_line(image.volume, positions.row(v).transpose(), normal, scores.step,
                                   reference.n_inside + R, n_outside + R);
-    const double sigma = blur_sigma(image.volume, normal, search.image_sigma);
-    const VecX row = reference.mean.row(v).transpose();
-    const Reference r = make_reference(smoothed_profile(row, sigma / scores.step),
-                                       reference.n_inside, scores.step, search.window);
-    if (!r.informative) return;
-    for (Index s = 0; s <= 2 * R; ++s) {
-      const double c = correlation(r, line, s, flat);
-      const Index centre = s + reference.n_inside;
-      if (std::isnan(c) || std::isnan(line[centre])) continue;
-      const double before = line[std::max<Index>(0, centre - 1)];
-      const double after = line[std::min<Index>(static_cast<Index>(line.size()) - 1, centre + 1)];
-      const double step = (after - before) / (kFullStep * image.intensity_range);
-      const double border = std::isnan(step) ? 0.0 : r.slope * std::clamp(step, -1.0, 1.0);
-      const double relative = R > 0 ? (s - R) / static_cast<double>(R) : 0.0;
-      scores.correlation(v, s) = c;
-      scores.score(v, s) =
-          c + search.gradient_weight * border - search.shift_penalty * relative * relative;
+    const double sigma = blur_sigma(image.volume, normal, search.image_sigma) / scores.step;
+    const auto score_one = [&](const VecX& profile) {
+      const Reference r = make_reference(smoothed_profile(profile, sigma), reference.n_inside,
+                                         scores.step, search.window);
+      if (r.informative)
+        update_with(r, line, image.intensity_range, reference.n_inside, search, v, scores);
+    };
+    if (!kinds) {
+      score_one(reference.mean.row(v).transpose());
+      return;
+    }
+    const double common = std::min(kCommonShare, kinds->share.row(v).maxCoeff());
+    for (Eigen::Index k = 0; k < kinds->mean.rows(); ++k) {
+      if (kinds->share(v, k) >= common) score_one(kinds->mean.row(k).transpose());
     }
   });
   return scores;

@@ -11,6 +11,8 @@ constexpr double kResidualScale = 1.5;
 /// mm. Bones that the examples do not describe leave the fitted model by 1 to 2 mm on average; what
 /// leaves it by this much is something else.
 constexpr double kDeviationScale = 4.0;
+/// How much of that a smooth deformation of the model counts: it is likelier than one that is not.
+constexpr double kSmoothShare = 0.4;
 /// Share of a structure that must be in view for full confidence in the whole.
 constexpr double kFullView = 0.2;
 
@@ -29,7 +31,8 @@ StructureQuality quality_of(const Body& body) {
     quality.correlation /= weight;
     quality.residual /= weight;
   }
-  const double deviation = (body.points - body.fit.points).rowwise().norm().mean();
+  const double deviation =
+      (body.points - body.fit.points).rowwise().norm().mean() + kSmoothShare * body.fit.off_model;
   quality.in_view /= static_cast<double>(std::max<Eigen::Index>(1, body.match.seen.size()));
   quality.confidence = std::clamp(quality.correlation, 0.0, 1.0) *
                        std::exp(-quality.residual / kResidualScale) *

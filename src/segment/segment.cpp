@@ -1,9 +1,11 @@
 #include <coxa/segment/segment.h>
 
 #include "result.h"
+#include "schedule.h"
 
 #include <coxa/core/error.h>
 #include <coxa/segment/evolve.h>
+#include <coxa/segment/layer_search.h>
 #include <coxa/segment/placement.h>
 #include <coxa/segment/pose_search.h>
 #include <coxa/segment/seat.h>
@@ -34,61 +36,6 @@ void check(const SegmentOptions& options) {
           "the force weights must be at least 0");
 }
 
-/// Bones: the pose and modes first, over a long way in a smooth image; then freer, finer, nearer.
-std::vector<Resolution> bone_resolutions(double range) {
-  return {{.coarsening = 3,
-           .range = range,
-           .image_sigma = 1.5,
-           .window = 5.0,
-           .affine_k = 0.0,
-           .level_share = 0.3,
-           .score_smoothing = 12,
-           .model_noise = 3.0,
-           .rigid = true},
-          {.coarsening = 3,
-           .range = 0.6 * range,
-           .image_sigma = 1.0,
-           .window = 4.0,
-           .affine_k = 0.5,
-           .level_share = 0.3,
-           .score_smoothing = 10,
-           .model_noise = 2.0},
-          {.coarsening = 2,
-           .range = 0.4 * range,
-           .image_sigma = 0.7,
-           .window = 3.0,
-           .affine_k = 0.85,
-           .level_share = 0.5,
-           .score_smoothing = 8,
-           .model_noise = 1.0},
-          {.coarsening = 1,
-           .range = 0.25 * range,
-           .image_sigma = 0.4,
-           .window = 3.0,
-           .affine_k = 1.0,
-           .level_share = 0.7,
-           .score_smoothing = 5,
-           .model_noise = 0.7},
-          {.coarsening = 0,
-           .range = 0.15 * range,
-           .window = 2.5,
-           .score_smoothing = 2,
-           .model_noise = 0.5}};
-}
-
-/// Cartilages start on their segmented bone, so they have no far way to go.
-std::vector<Resolution> layer_resolutions() {
-  return {{.coarsening = 1,
-           .range = 2.5,
-           .image_sigma = 0.4,
-           .window = 2.0,
-           .affine_k = 0.7,
-           .level_share = 0.5,
-           .score_smoothing = 5,
-           .model_noise = 0.7},
-          {.coarsening = 0, .range = 1.5, .window = 1.5, .score_smoothing = 2, .model_noise = 0.5}};
-}
-
 std::vector<PreparedImage> smoothed_images(const std::vector<PreparedImage>& images, double sigma) {
   std::vector<PreparedImage> out = images;
   if (sigma <= 0.0) return out;
@@ -109,16 +56,22 @@ void update_through(std::vector<Body>& bodies, const std::vector<Resolution>& re
   }
 }
 
+/// "t1" of "t1_fluid": what the bones show; whether fluid parts the cartilages only these show.
+std::string base_of(const std::string& contrast) { return contrast.substr(0, contrast.find('_')); }
+
 /// The contrast whose profiles, after placing the bodies with them, fit this
 /// image best, beside the images whose contrast is known already: a second
-/// image with half the hip cannot mislead what the first one shows.
+/// image with half the hip cannot mislead what the first one shows. Where the image has one
+/// already, only that one and its variants are tried.
 std::string best_contrast(const std::vector<Body>& bodies, std::span<const PreparedImage> known,
                           const PreparedImage& image, const Resolution& resolution,
                           const SegmentOptions& options) {
   if (options.contrast) return *options.contrast;
   std::set<std::string> contrasts;
-  for (const shape::ProfileSet& set : bodies.front().model->profiles)
-    contrasts.insert(set.contrast);
+  for (const shape::ProfileSet& set : bodies.front().model->profiles) {
+    if (base_of(set.contrast) == base_of(image.contrast) || image.contrast.empty())
+      contrasts.insert(set.contrast);
+  }
   require(!contrasts.empty(), "the atlas has no intensity profiles");
   std::vector<PreparedImage> images(known.begin(), known.end());
   images.push_back(image);
@@ -151,6 +104,24 @@ Body placed_body(const shape::StructureModel& model, Points placed) {
   return body;
 }
 
+/// Lengths over which the unknown deformations of a bone are alike, mm, and how large they are
+/// beside what the examples leave of each other.
+constexpr double kLongLength = 60.0, kLongShare = 3.0;
+constexpr double kShortLength = 25.0, kShortShare = 1.0;
+
+/// What the examples do not show of a structure.
+Preparation prepared(const shape::StructureModel& model) {
+  const SimplexMesh& mesh = model.hierarchy.levels.back();
+  Preparation preparation;
+  for (const shape::ProfileSet& set : model.profiles)
+    preparation.kinds[set.contrast] = profile_kinds(set, mesh.neighbours);
+  const double left = std::isnan(model.leave_one_out_error) ? 0.0 : model.leave_one_out_error;
+  preparation.smooth =
+      joined(smooth_modes(mesh.points, {.deviation = kLongShare * left, .length = kLongLength}),
+             smooth_modes(mesh.points, {.deviation = kShortShare * left, .length = kShortLength}));
+  return preparation;
+}
+
 /// A structure's confidence below which the caller is warned; a good fit has 0.6 to 0.9.
 constexpr double kLowConfidence = 0.4;
 
@@ -160,6 +131,8 @@ class Hip {
   Hip(std::vector<PreparedImage> images, const shape::Atlas& atlas, const SegmentOptions& options)
       : images_(std::move(images)), atlas_(atlas), options_(options) {
     choose_models();
+    for (std::size_t s = 0; s < models_.size(); ++s)
+      preparations_.push_back(hosts_[s] ? Preparation{} : prepared(*models_[s]));
     bodies_.resize(models_.size());
   }
 
@@ -177,12 +150,10 @@ class Hip {
                           : place_by_landmarks(models, landmarks, atlas_, options_.landmark_error);
     for (std::size_t b = 0; b < models.size(); ++b) {
       bones.push_back(placed_body(*models[b], placed[b]));
+      bones.back().prepared = &preparations_[numbers[b]];
     }
     const auto resolutions = bone_resolutions(options_.search_range);
-    for (std::size_t i = 0; i < images_.size(); ++i) {
-      images_[i].contrast = best_contrast(bones, std::span(images_).first(i), images_[i],
-                                          resolutions.front(), options_);
-    }
+    choose_contrasts(bones, resolutions.front());
     update_through(bones, resolutions, images_, std::vector<Obstacles>(bones.size()),
                    std::vector<TriMesh>(bones.size()), options_, monitor);
     for (std::size_t b = 0; b < bones.size(); ++b) bodies_[numbers[b]] = std::move(bones[b]);
@@ -191,27 +162,30 @@ class Hip {
   void segment_layers(const Monitor& monitor) {
     std::vector<std::size_t> numbers;
     std::vector<Body> layers;
-    std::vector<TriMesh> seats;
+    std::vector<TriMesh> means, seats;
     for (std::size_t s = 0; s < models_.size(); ++s) {
       if (!hosts_[s]) continue;
       const Body& host = bodies_[*hosts_[s]];
-      const TriMesh mean = dual_surface(host.model->hierarchy.levels.back());
-      TriMesh now = surface_mesh(host);
+      means.push_back(dual_surface(host.model->hierarchy.levels.back()));
+      seats.push_back(surface_mesh(host));
       Body layer = placed_body(
-          *models_[s], carried_points(models_[s]->hierarchy.levels.back().points, mean, now));
-      layer.seat = seated_vertices(*models_[s], mean);
+          *models_[s],
+          carried_points(models_[s]->hierarchy.levels.back().points, means.back(), seats.back()));
+      layer.seat = seated_vertices(*models_[s], means.back());
       numbers.push_back(s);
       layers.push_back(std::move(layer));
-      seats.push_back(std::move(now));
     }
     if (layers.empty()) return;
+    const auto resolutions = layer_resolutions();
+    choose_contrasts(layers, resolutions.front());
+    place_layers(layers, means, seats, resolutions.front());
     // no layer enters any bone
     Obstacles bones;
     for (std::size_t s = 0; s < models_.size(); ++s) {
       if (!hosts_[s]) bones.push_back(surface_mesh(bodies_[s]));
     }
-    update_through(layers, layer_resolutions(), images_,
-                   std::vector<Obstacles>(layers.size(), bones), seats, options_, monitor);
+    update_through(layers, resolutions, images_, std::vector<Obstacles>(layers.size(), bones),
+                   seats, options_, monitor);
     for (std::size_t b = 0; b < layers.size(); ++b) bodies_[numbers[b]] = std::move(layers[b]);
   }
 
@@ -226,6 +200,31 @@ class Hip {
   }
 
  private:
+  void choose_contrasts(const std::vector<Body>& bodies, Resolution resolution) {
+    resolution.fit_only = true;
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+      images_[i].contrast =
+          best_contrast(bodies, std::span(images_).first(i), images_[i], resolution, options_);
+    }
+  }
+
+  /// Layers with sides known start with the modes that fit the images best.
+  void place_layers(std::vector<Body>& layers, const std::vector<TriMesh>& means,
+                    const std::vector<TriMesh>& seats, Resolution resolution) {
+    resolution.range = 0.0;
+    resolution.score_smoothing = 0;
+    const auto smooth = smoothed_images(images_, resolution.image_sigma);
+    for (std::size_t b = 0; b < layers.size(); ++b) {
+      if (layers[b].model->n_bone_side == 0) continue;
+      const VecX seat = layers[b].seat;
+      const Points placed =
+          layer_by_modes(layers[b], means[b], seats[b], smooth, resolution, options_);
+      layers[b] = placed_body(*layers[b].model, placed);
+      layers[b].points = placed;
+      layers[b].seat = seat;
+    }
+  }
+
   /// The structures asked for and the ones they lie on.
   void choose_models() {
     std::vector<const shape::StructureModel*> all;
@@ -249,6 +248,7 @@ class Hip {
   const SegmentOptions& options_;
   std::vector<const shape::StructureModel*> models_;
   std::vector<std::optional<std::size_t>> hosts_;
+  std::vector<Preparation> preparations_;
   std::vector<Body> bodies_;
 };
 

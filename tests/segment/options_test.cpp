@@ -58,7 +58,7 @@ TEST(SegmentOptions, EveryForceWeightChangesTheResult) {
 
 TEST(SegmentOptions, SearchAndIterationOptionsChangeTheResult) {
   EXPECT_NE(points({.landmark_error = 10.0}), default_points());
-  EXPECT_NE(points({.search_range = 6.0}), default_points());
+  EXPECT_NE(points({.search_range = 9.0}), default_points());
   EXPECT_NE(points({.gradient_weight = 0.0}), default_points());
   EXPECT_NE(points({.iterations = 2}), default_points());
   EXPECT_NE(points({.tolerance = 0.5}), default_points());

@@ -4,17 +4,27 @@
 #include <coxa/segment/profile_search.h>
 #include <coxa/shape/atlas.h>
 
+#include <map>
+#include <string>
+
 namespace coxa::segment {
+
+/// What is made of a model once, before its body moves.
+struct Preparation {
+  SmoothModes smooth;                         ///< deformations allowed beside the model's modes
+  std::map<std::string, ProfileKinds> kinds;  ///< by contrast
+};
 
 /// A structure on its way from the atlas to the image.
 ///
-/// @note refers to the model, which must outlive it.
+/// @note refers to the model and its preparation, which must outlive it.
 struct Body {
   const shape::StructureModel* model = nullptr;
-  Points points;       ///< V×3 finest level, LPS mm
-  ModelFit fit;        ///< the shape model's opinion
-  ProfileMatch match;  ///< of the last iteration, finest level
-  VecX seat;           ///< V: 1 on vertices that lie on the host's surface; empty without a host
+  const Preparation* prepared = nullptr;  ///< null: the model's own modes and mean profiles only
+  Points points;                          ///< V×3 finest level, LPS mm
+  ModelFit fit;                           ///< the shape model's opinion
+  ProfileMatch match;                     ///< of the last iteration, finest level
+  VecX seat;  ///< V: 1 on vertices that lie on the host's surface; empty without a host
 };
 
 /// The finest level's topology with the body's positions.

@@ -22,7 +22,8 @@ struct Resolution {
   double level_share = 1.0;  ///< of the finest part in the combination with coarser levels' forces
   int score_smoothing = 4;   ///< passes over neighbours before each vertex chooses its shift
   double model_noise = 2.0;  ///< mm, trust of the statistical fit in a single vertex' match
-  bool rigid = false;        ///< whole body motion only: no particles are moved freely
+  bool fit_only = false;     ///< bodies follow their fitted shape: no particles are moved freely
+  bool smooth = true;        ///< the fit may use the bodies' smooth deformations
 };
 
 /// A rigid surface that the bodies may not enter.

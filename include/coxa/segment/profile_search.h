@@ -1,6 +1,7 @@
 #pragma once
 
 #include <coxa/image/volume.h>
+#include <coxa/segment/profile_kinds.h>
 #include <coxa/shape/atlas.h>
 
 #include <string>
@@ -38,9 +39,11 @@ struct ProfileScores {
 };
 
 /// Row i of the reference belongs to position i.
+/// @param kinds of the reference: the best-scoring of the kinds common about a vertex counts, not
+///              the vertex' own mean; null: its own
 ProfileScores score_profiles(const PreparedImage& image, const Points& positions,
                              const Points& normals, const shape::ProfileSet& reference,
-                             const ProfileSearch& search);
+                             const ProfileSearch& search, const ProfileKinds* kinds = nullptr);
 
 /// Adds the scores of a second image: mean where both see the profile.
 void update_combined(ProfileScores& scores, const ProfileScores& other);

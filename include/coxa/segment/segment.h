@@ -27,7 +27,7 @@ struct SegmentOptions {
                                          "acetabular_cartilage"};
   double landmark_error = 3.0;  ///< mm, expected standard error of a landmark, >= 0
   double search_range =
-      12.0;  ///< mm, how far from its start a border is looked for at the coarsest level, > 0
+      6.0;  ///< mm, how far from its start a border is looked for at the coarsest level, > 0
   ForceWeights weights = {};
   double gradient_weight =
       0.3;                    ///< of the border's gradient beside the profile's correlation, >= 0
