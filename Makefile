@@ -1,5 +1,5 @@
 # The targets of coxa; each does all the set-up it needs. See README.md.
-.PHONY: demo test build verify bench docs clean deps configure check sanitize
+.PHONY: demo test build web verify bench docs clean deps configure check sanitize
 
 BUILD  := build/release
 STRICT := $(if $(CI),ON,OFF)
@@ -12,18 +12,23 @@ configure: deps
 	@cmake --preset release -DCOXA_WARNINGS_AS_ERRORS=$(STRICT) > build-configure.log 2>&1 \
 	  && rm -f build-configure.log || { cat build-configure.log; rm -f build-configure.log; exit 1; }
 
+# The browser application that coxa view serves, into web/dist.
+web: deps
+	@tools/build_web.sh
+
 # The command at build/release/coxa.
-build: configure
+build: configure web
 	@cmake --build $(BUILD) --target coxa
 
 # Draws a virtual patient and runs the whole chain on it.
 demo: build
 	@tools/demo.sh
 
-# Everything fast: format, layers, unit tests.
-test: check
+# Everything fast: format, layers, unit tests, the browser application in chromium.
+test: check web
 	@cmake --build $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure --timeout 600 -j 2
+	@tools/test_web.sh $(BUILD)
 
 check: configure
 	@tools/check_layers.py
@@ -51,4 +56,4 @@ docs:
 	@tools/check_docs.py
 
 clean:
-	rm -rf build demo
+	rm -rf build demo web/dist web/node_modules

@@ -12,3 +12,4 @@ echo "== distance of the result to the virtual patient's truth (a demonstration,
 $coxa compare demo/result/segment demo/patient/truth --image demo/patient/image.nii.gz
 echo
 echo "report: $PWD/demo/result/report/report.html"
+echo "examine it in a browser: $PWD/$coxa view demo/result"

@@ -8,7 +8,11 @@ packages=(
   libnanoflann-dev libgdcm-dev libvtk9-dev libembree-dev libboost-dev zlib1g-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   clang-format python3
+  chromium fonts-dejavu-core
 )
+# node and npm may have come from elsewhere
+command -v node >/dev/null || packages+=(nodejs)
+command -v npm >/dev/null || packages+=(npm)
 
 missing=()
 for package in "${packages[@]}"; do

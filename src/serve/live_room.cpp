@@ -55,6 +55,44 @@ Json meta_of(const joint::FrameResult& frame, const motion::HipAngles& angles) {
   return meta;
 }
 
+using Arrays = std::vector<std::pair<std::string, MatX>>;
+using Values = std::map<std::string, VecX>;
+
+void add_body(Arrays& arrays, const std::string& name, const BodySurface& surface,
+              const Points& positions, const Values& values) {
+  arrays.emplace_back(name + ".positions", at_surface(surface, positions));
+  for (const auto& [key, value] : values)
+    arrays.emplace_back(name + "." + key, at_surface(surface, value));
+}
+
+/// True where a field comes of stress or strain; an empty one stands for all.
+bool needs_elements(const std::string& field) {
+  return field != "contact_pressure" && field != "gap" && field != "thickness";
+}
+Values chosen(Values values, const std::string& field) {
+  if (!field.empty())
+    std::erase_if(values, [&](const auto& entry) { return entry.first != field; });
+  return values;
+}
+Values acetabular_values(const joint::JointModel& model, const joint::FrameResult& frame,
+                         const std::string& field) {
+  Values values;
+  if (needs_elements(field))
+    values =
+        chosen(nodal_fields(model.acetabular_cartilage, acetabular_fields(model, frame)), field);
+  values["contact_pressure"] = frame.acetabular_pressure;
+  values["gap"] = frame.acetabular_gap;
+  return values;
+}
+Values femoral_values(const joint::JointModel& model, const joint::FrameResult& frame,
+                      const std::string& field) {
+  Values values;
+  if (needs_elements(field))
+    values = chosen(nodal_fields(model.femoral_cartilage, femoral_fields(model, frame)), field);
+  values["contact_pressure"] = frame.femoral_pressure;
+  return values;
+}
+
 }  // namespace
 
 /// One connection's hip. `hip` and what belongs to it are touched by the solver's thread alone; the
@@ -79,11 +117,12 @@ LiveRoom::~LiveRoom() {
   thread_.join();
 }
 
-void LiveRoom::pose(ClientId client, std::int64_t number, const motion::HipAngles& target) {
-  ask(client, {number, false, target});
+void LiveRoom::pose(ClientId client, std::int64_t number, const motion::HipAngles& target,
+                    const std::string& field) {
+  ask(client, {number, false, target, field});
 }
 
-void LiveRoom::settle(ClientId client, std::int64_t number) { ask(client, {number, true, {}}); }
+void LiveRoom::settle(ClientId client, std::int64_t number) { ask(client, {number, true, {}, ""}); }
 
 void LiveRoom::leave(ClientId client) {
   const std::lock_guard lock(mutex_);
@@ -168,29 +207,16 @@ void LiveRoom::answer(Guest& guest, const Question& question) {
   meta["arrived"] = step.arrived;
   meta["solver_ms"] = solved;
 
-  std::vector<std::pair<std::string, MatX>> arrays;
+  Arrays arrays;
   if (frame.status == joint::FrameStatus::converged) {
     const joint::JointModel& model = guest.source.model;
-    const auto add = [&](const std::string& name, const TetMesh& mesh, const Points& positions,
-                         std::map<std::string, VecX> fields) {
-      const BodySurface& surface = guest.surfaces[name];
-      arrays.emplace_back(name + ".positions", at_surface(surface, positions));
-      for (const auto& [key, values] : fields)
-        arrays.emplace_back(name + "." + key, at_surface(surface, values));
-      return mesh.n_tets();
-    };
-    auto socket = nodal_fields(model.acetabular_cartilage, joint::acetabular_fields(model, frame));
-    socket["contact_pressure"] = frame.acetabular_pressure;
-    socket["gap"] = frame.acetabular_gap;
-    auto head = nodal_fields(model.femoral_cartilage, joint::femoral_fields(model, frame));
-    head["contact_pressure"] = frame.femoral_pressure;
-    const Index tets =
-        add("acetabular", model.acetabular_cartilage,
-            model.acetabular_cartilage.points + frame.acetabular_displacement, socket) +
-        add("femoral", model.femoral_cartilage,
-            transformed(model.femoral_cartilage.points, frame.X_II) + frame.femoral_displacement,
-            head);
-    meta["tets"] = tets;
+    add_body(arrays, "acetabular", guest.surfaces["acetabular"],
+             model.acetabular_cartilage.points + frame.acetabular_displacement,
+             acetabular_values(model, frame, question.field));
+    add_body(arrays, "femoral", guest.surfaces["femoral"],
+             transformed(model.femoral_cartilage.points, frame.X_II) + frame.femoral_displacement,
+             femoral_values(model, frame, question.field));
+    meta["tets"] = model.acetabular_cartilage.n_tets() + model.femoral_cartilage.n_tets();
     if (question.exact && guest.last) {
       const auto moved = [](const Points& a, const Points& b) {
         return (a - b).rowwise().norm().maxCoeff();

@@ -23,9 +23,11 @@ class LiveRoom {
   LiveRoom(const CaseFolder& folder, Send send) : folder_(folder), send_(std::move(send)) {}
   ~LiveRoom();
 
-  /// A step towards a pose; the first one reads the hip and seats it.
-  void pose(ClientId client, std::int64_t number, const motion::HipAngles& target);
-  /// The exact equilibrium at the present pose.
+  /// A step towards a pose; the first one reads the hip and seats it. The answer carries the
+  /// contact pressure and `field`; computing all would take a fifth of the solver's time.
+  void pose(ClientId client, std::int64_t number, const motion::HipAngles& target,
+            const std::string& field);
+  /// The exact equilibrium at the present pose, with all fields.
   void settle(ClientId client, std::int64_t number);
   void leave(ClientId client);
 
@@ -35,6 +37,7 @@ class LiveRoom {
     std::int64_t number = 0;
     bool exact = false;
     motion::HipAngles target;
+    std::string field;
   };
   void ask(ClientId client, const Question& question);
   void work(const std::shared_ptr<Guest>& guest);

@@ -142,7 +142,8 @@ void ViewApplication::Impl::act(ClientId client, const Json& json) {
   if (type == "pose") {
     live.pose(client, json.at("number").get<std::int64_t>(),
               {angle_of(json, "flexion_deg"), angle_of(json, "adduction_deg"),
-               angle_of(json, "internal_rotation_deg")});
+               angle_of(json, "internal_rotation_deg")},
+              json.value("field", "contact_pressure"));
   } else if (type == "settle") {
     live.settle(client, json.at("number").get<std::int64_t>());
   } else if (type == "live_leave") {

@@ -55,12 +55,19 @@ export class ExamPage {
 
   enter(): void {
     this.viewer.onDrawn = (ms) => (this.drawMs = ms);
+    this.client.field = this.colours.field ?? "contact_pressure";
     this.leadTo(this.wanted);
   }
   leave(): void {
     this.viewer.onDrawn = null;
     this.stopReplay();
     this.client.leave();
+  }
+
+  /** Another field is looked at: the next answers carry it. */
+  fieldChanged(): void {
+    this.client.field = this.colours.field ?? "contact_pressure";
+    this.client.again();
   }
 
   receive(bundle: Bundle): void {
@@ -237,7 +244,7 @@ export class ExamPage {
       ["Fields and packing", packing, ""],
       ["Transfer and waiting", transfer, ""],
       ["JavaScript", javascript, ""],
-      ["Drawing", this.drawMs, ""],
+      [this.viewer.software ? "Drawing (no graphics card)" : "Drawing", this.drawMs, ""],
       ["Updates a second", this.arrivals.length > 1 ? (1000 * (this.arrivals.length - 1)) / span : NaN, ""],
       ["Tetrahedra", number("tets"), ""],
     ]);

@@ -127,6 +127,7 @@ class App {
   private recolour(): void {
     if (this.page === "result") this.result.refresh();
     else this.colours.apply();
+    if (this.page === "exam" && this.exam.client.field !== (this.colours.field ?? "contact_pressure")) this.exam.fieldChanged();
   }
 
   private connection(open: boolean): void {

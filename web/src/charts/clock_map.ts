@@ -76,7 +76,8 @@ export class ClockMap {
     const style = getComputedStyle(this.element);
     context.strokeStyle = style.getPropertyValue("--line");
     context.fillStyle = style.getPropertyValue("--ink");
-    context.font = "12px system-ui, sans-serif";
+    const rem = parseFloat(getComputedStyle(document.documentElement).fontSize);
+    context.font = `${0.85 * rem}px system-ui, sans-serif`;
     context.textAlign = "center";
     context.textBaseline = "middle";
     for (const angle of [1 / 3, 2 / 3, 1]) {
@@ -86,7 +87,7 @@ export class ClockMap {
     }
     for (let hour = 1; hour <= 12; ++hour) {
       const turn = (hour / 12) * 2 * Math.PI;
-      context.fillText(String(hour), middle + Math.sin(turn) * (middle - 8), middle - Math.cos(turn) * (middle - 8));
+      context.fillText(String(hour), middle + Math.sin(turn) * (middle - 0.6 * rem), middle - Math.cos(turn) * (middle - 0.6 * rem));
     }
   }
 

@@ -22,9 +22,10 @@ export class Curves {
   private plots: uPlot[] = [];
   private data: { x: number[]; plots: CurvePlot[]; lacking: boolean[] } | null = null;
   private current = 0;
+  private width = 0; // that the plots were built for
 
   constructor(private readonly onChoose: (frame: number) => void) {
-    new ResizeObserver(() => this.build()).observe(this.element);
+    new ResizeObserver(() => this.element.clientWidth !== this.width && this.build()).observe(this.element);
   }
 
   /** @param lacking frames without a result, shaded */
@@ -42,8 +43,9 @@ export class Curves {
   build(): void {
     const width = this.element.clientWidth;
     if (!this.data || width < 50) return;
+    this.width = width;
     for (const plot of this.plots) plot.destroy();
-    this.element.replaceChildren();
+    this.element.replaceChildren(make("p", { class: "note" }, "Over time [s]; shaded: frames without a result."));
     this.plots = this.data.plots.map((plot) => this.plot(plot, width));
   }
 
@@ -61,14 +63,15 @@ export class Curves {
     box.append(make("figcaption", {}, make("strong", {}, title), ...keys));
     this.element.append(box);
     const x = this.data?.x ?? [];
-    const axis = { stroke: ink, grid: { stroke: line, width: 1 }, ticks: { stroke: line }, font: "11px system-ui" };
+    const rem = parseFloat(getComputedStyle(document.documentElement).fontSize);
+    const axis = { stroke: ink, grid: { stroke: line, width: 1 }, ticks: { stroke: line }, font: `${0.8 * rem}px system-ui` };
     return new uPlot(
       {
         width,
-        height: 104,
+        height: 7.4 * rem,
         cursor: { points: { show: false }, drag: { x: false, y: false } },
         scales: { x: { time: false } },
-        axes: [{ ...axis, size: 26 }, { ...axis, size: 40 }],
+        axes: [{ ...axis, size: 1.9 * rem }, { ...axis, size: 2.9 * rem }],
         legend: { show: false },
         series: [
           { label: "frame" },

@@ -22,9 +22,10 @@ export function rangeOf(arrays: Float32Array[]): [low: number, high: number] {
     for (let i = 0; i < values.length; i += step) some.push(values[i] ?? NaN);
   }
   const lowest = percentile(some, 0);
-  const low = lowest >= 0 ? lowest : percentile(some, 0.01);
   // exact zeros are no contact: they say nothing of how high a pressure is
   const high = percentile(lowest === 0 ? some.filter((value) => value !== 0) : some, 0.99);
+  // a range that begins next to nothing begins at nothing
+  const low = lowest < 0 ? percentile(some, 0.01) : lowest < 0.02 * high ? 0 : lowest;
   if (!Number.isFinite(low)) return [0, 1];
   return high > low ? [low, high] : [low, low + Math.max(1e-6, Math.abs(low) * 0.01)];
 }

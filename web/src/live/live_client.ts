@@ -29,6 +29,8 @@ const kSettleAfter = 400; // ms of rest before the exact state is asked for
  * drawn, so that the solver works while the browser draws. After a rest the exact state is asked for.
  */
 export class LiveClient {
+  /** The field that answers to steps carry beside the contact pressure. */
+  field = "contact_pressure";
   private wanted: Pose | null = null;
   private asked: { number: number; exact: boolean; at: number; pose: Pose | null } | null = null;
   private number = 0;
@@ -49,6 +51,11 @@ export class LiveClient {
     clearTimeout(this.timer);
     // a settling is given up for a new pose; a step is left to finish
     if (!this.asked || this.asked.exact) this.ask(false);
+  }
+
+  /** The same pose again, for another field. */
+  again(): void {
+    if (this.wanted) this.moveTo(this.wanted);
   }
 
   /** A bundle that came over the socket. @returns false for one that is no longer waited for */
@@ -98,7 +105,7 @@ export class LiveClient {
   private ask(exact: boolean): void {
     if (!exact && !this.wanted) return;
     const number = ++this.number;
-    const message = exact ? { type: "settle", number } : { type: "pose", number, ...this.wanted };
+    const message = exact ? { type: "settle", number } : { type: "pose", number, field: this.field, ...this.wanted };
     if (!this.send(message)) return;
     this.asked = { number, exact, at: this.now(), pose: exact ? null : { ...(this.wanted as Pose) } };
   }

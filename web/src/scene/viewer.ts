@@ -23,6 +23,15 @@ export const viewpoints: Record<string, Vec3> = {
 const kTurn = Math.PI / 36;
 const kMargin = 1.08;
 
+/** True where the browser draws without a graphics card: then smooth edges cost more than they are worth. */
+function drawsInSoftware(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = gl && info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
+}
+
 /** The 3D view: parallel projection, drawn only when something has changed. */
 export class Viewer {
   readonly scene = new THREE.Scene();
@@ -30,6 +39,7 @@ export class Viewer {
   readonly renderer: THREE.WebGLRenderer;
   readonly controls: OrbitControls;
   readonly layers = new Map<string, SurfaceLayer>();
+  readonly software: boolean;
   onDrawn: ((milliseconds: number) => void) | null = null;
   private readonly marker = new THREE.Mesh(new THREE.SphereGeometry(1, 16, 12), new THREE.MeshBasicMaterial({ color: 0xd00000, depthTest: false }));
   private readonly plane = new THREE.Plane(new THREE.Vector3(0, 0, -1), 0);
@@ -38,7 +48,8 @@ export class Viewer {
   private queued = false;
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "high-performance" });
+    this.software = drawsInSoftware();
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.software, alpha: true, powerPreference: "high-performance" });
     this.renderer.localClippingEnabled = true;
     this.camera.up.set(0, 0, 1);
     // a light at the eye takes at most a third of the brightness: colours stay comparable with the bar
@@ -178,7 +189,7 @@ export class Viewer {
   private resize(): void {
     const box = (this.canvas.parentElement ?? this.canvas).getBoundingClientRect();
     if (box.width === 0 || box.height === 0) return;
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.renderer.setPixelRatio(this.software ? 1 : Math.min(2, window.devicePixelRatio));
     this.renderer.setSize(box.width, box.height);
     this.setFrustum(box.width, box.height);
     this.invalidate();

@@ -1,0 +1,108 @@
+import axe from "axe-core";
+import { existsSync, readFileSync, rmSync } from "node:fs";
+import { resolve } from "node:path";
+import type { Browser, Page } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, test } from "vitest";
+import { launch, open, picture, prepareCase, serve, type Served } from "./setup";
+
+let folder: string;
+let server: Served;
+let browser: Browser;
+let page: Page;
+let faults: string[];
+
+beforeAll(async () => {
+  folder = prepareCase();
+  server = await serve(folder);
+  browser = await launch();
+  ({ page, faults } = await open(browser, server.url));
+  await page.click("#tab-exam");
+});
+afterAll(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+const verdict = "#side p[data-status]";
+const status = async (): Promise<string> => (await page.getAttribute(verdict, "data-status")) ?? "";
+const flexion = async (): Promise<number> => Number(/flexion (-?[\d.]+)°/.exec(await page.innerText(verdict))?.[1]);
+const slide = (axis: string, value: number): Promise<void> => page.fill(`[data-axis=${axis}]`, String(value));
+
+describe("the live examination", () => {
+  test("answers the first pose with an equilibrium", async () => {
+    await page.waitForSelector(verdict, { timeout: 30_000 });
+    await expect.poll(status, { timeout: 30_000 }).toBe("converged");
+  });
+  test("follows the slider, and says what it cost", async () => {
+    const start = await flexion();
+    await slide("flexion_deg", Math.round(start) + 6);
+    await expect.poll(flexion, { timeout: 30_000 }).toBeGreaterThan(start + 1);
+    const times = JSON.parse((await page.getAttribute("#side tbody[data-times]", "data-times"))!) as Record<string, number>;
+    console.log("live, ms:", JSON.stringify(times));
+    expect(times["solver"]).toBeGreaterThan(0);
+    expect(times["javascript"]).toBeGreaterThan(0);
+    expect(await page.innerText("#side")).toMatch(/Peak pressure \(99th percentile\)\s+[\d.]+ MPa/);
+  });
+  test("at rest compares with the full solution", async () => {
+    await page.waitForSelector("#side p[data-settled=yes]", { timeout: 40_000 });
+    expect(await page.innerText("#side p[data-settled=yes]")).toMatch(/peak pressure [\d.]+ by hand, [\d.]+ MPa settled/);
+    await page.screenshot({ path: picture("exam_1280_light") });
+  });
+  test("is led by the mouse", async () => {
+    const before = Number(await page.inputValue("[data-axis=flexion_deg]"));
+    await page.click("text=Mouse leads the leg");
+    const box = (await page.locator("#scene").boundingBox())!;
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2 - 16, { steps: 4 });
+    await page.mouse.up();
+    expect(Number(await page.inputValue("[data-axis=flexion_deg]"))).toBeCloseTo(before + 4, 0);
+    await page.click("text=Mouse leads the leg");
+  });
+  test("is led by the keyboard, recorded, saved as a movement and replayed", async () => {
+    rmSync(resolve(folder, "movements"), { recursive: true, force: true });
+    await page.click("text=Record");
+    await page.focus("[data-axis=flexion_deg]");
+    for (let i = 0; i < 4; ++i) {
+      const count = Number(/(\d+) poses/.exec((await page.locator("#panel p.note", { hasText: "poses" }).innerText()))?.[1]);
+      await page.keyboard.press("ArrowRight");
+      await expect.poll(async () => Number(/(\d+) poses/.exec(await page.locator("#panel p.note", { hasText: "poses" }).innerText())?.[1]), { timeout: 20_000 }).toBeGreaterThan(count);
+    }
+    await page.click("text=Stop");
+    await page.getByLabel("Name of the movement").fill("by_hand");
+    await page.click("text=Save movement");
+    await expect.poll(() => page.innerText("#status")).toContain("movements/by_hand.toml");
+    const text = readFileSync(resolve(folder, "movements/by_hand.toml"), "utf8");
+    expect(text).toContain("flexion_deg");
+    await page.click("text=Replay");
+    await page.waitForTimeout(300);
+    expect(existsSync(resolve(folder, "movements/by_hand.toml"))).toBe(true);
+  });
+  test("a lost connection is shown, and the examination goes on when the server is back", async () => {
+    const port = server.port;
+    await server.stop();
+    await expect.poll(() => page.innerText("#connection")).toContain("lost");
+    server = await serve(folder, port);
+    await expect.poll(() => page.innerText("#connection"), { timeout: 15_000 }).toBe("connected");
+    const before = await flexion();
+    await slide("flexion_deg", Math.round(before) + 3);
+    await expect.poll(flexion, { timeout: 40_000 }).not.toBe(before);
+  });
+  test("axe finds no serious fault", async () => {
+    await page.evaluate(axe.source);
+    const found = (await page.evaluate("axe.run()")) as axe.AxeResults;
+    expect(found.violations.filter((v) => v.impact === "serious" || v.impact === "critical").map((v) => v.id)).toEqual([]);
+  });
+  test("two windows each lead a hip of their own", async () => {
+    const { page: second } = await open(browser, server.url);
+    await second.click("#tab-exam");
+    await second.waitForSelector(verdict, { timeout: 30_000 });
+    const mine = await flexion();
+    await second.fill("[data-axis=adduction_deg]", "-10");
+    await second.waitForTimeout(500);
+    expect(await flexion()).toBe(mine);
+    await second.close();
+    // the lost connection was complained of by the browser itself; nothing else was
+    expect(faults.filter((fault) => !fault.includes("WebSocket"))).toEqual([]);
+  });
+});

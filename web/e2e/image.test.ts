@@ -1,0 +1,137 @@
+import axe from "axe-core";
+import { existsSync, readFileSync } from "node:fs";
+import { resolve } from "node:path";
+import type { Browser, Page } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, test } from "vitest";
+import { beginSubject, launch, open, picture, prepareCase, serve, type Served } from "./setup";
+
+let folder: string;
+let server: Served;
+let browser: Browser;
+let page: Page;
+let faults: string[];
+
+beforeAll(async () => {
+  prepareCase();
+  folder = beginSubject("begun", true);
+  server = await serve(folder);
+  browser = await launch();
+  ({ page, faults } = await open(browser, server.url));
+});
+afterAll(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+interface Markup {
+  markups: { controlPoints: { label: string; position: number[] }[] }[];
+}
+function stored(): Map<string, number[]> {
+  const file = JSON.parse(readFileSync(resolve(folder, "landmarks.mrk.json"), "utf8")) as Markup;
+  return new Map(file.markups[0]!.controlPoints.map((p) => [p.label, p.position]));
+}
+const focus = async (): Promise<number[]> => ((await page.getAttribute("#slices", "data-focus")) ?? "").split(" ").map(Number);
+const slice = (n: number) => page.locator("#slices canvas").nth(n);
+
+describe("from an MRI", () => {
+  test("a folder that is just begun opens with its slices", async () => {
+    await page.waitForSelector("#slices canvas");
+    expect(await page.getAttribute("body", "data-page")).toBe("image");
+    expect(await page.locator("#slices canvas").count()).toBe(3);
+    await expect.poll(async () => (await focus()).length).toBe(3);
+  });
+  test("slices are linked: a click moves the cross-hair of all, wheel and keys change slices", async () => {
+    const before = await focus();
+    await slice(0).click({ position: { x: 60, y: 60 } });
+    const clicked = await focus();
+    expect(clicked[0]).not.toBeCloseTo(before[0]!, 1);
+    expect(clicked[2]).toBeCloseTo(before[2]!, 1); // axial: the height stays
+    await slice(0).hover();
+    await page.mouse.wheel(0, -100);
+    await expect.poll(async () => (await focus())[2]).toBeCloseTo(clicked[2]! + 1.5, 1);
+    await slice(0).focus();
+    await page.keyboard.press("PageDown");
+    await expect.poll(async () => (await focus())[2]).toBeCloseTo(clicked[2]!, 1);
+    await page.keyboard.press("ArrowRight");
+    await expect.poll(async () => (await focus())[0]).toBeCloseTo(clicked[0]! + 1.5, 1);
+  });
+  test("a landmark is placed, moved, renamed, removed, each saved at once, each undone", async () => {
+    await page.getByLabel("Name of the landmark").fill("my_point");
+    await page.click("[data-testid=place]");
+    await expect.poll(() => stored().get("my_point")?.[0]).toBeCloseTo((await focus())[0]!, 1);
+
+    // moved by dragging it in the axial slice
+    const box = (await slice(0).boundingBox())!;
+    await slice(0).click({ position: { x: box.width / 2, y: box.height / 2 } });
+    await page.click("[data-testid=place] >> nth=0");
+    await page.getByLabel("Name of the landmark").fill("dragged");
+    await page.click("[data-testid=place]");
+    await expect.poll(() => stored().has("dragged")).toBe(true);
+    const placed = stored().get("dragged")!;
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x + box.width / 2 + 30, box.y + box.height / 2, { steps: 5 });
+    await page.mouse.up();
+    await expect.poll(() => stored().get("dragged")![0]! - placed[0]!).toBeGreaterThan(5);
+
+    await page.click(".landmarks .name:text-is('dragged')");
+    await page.getByLabel("Name of the landmark").fill("renamed");
+    await page.click("text=Rename");
+    await expect.poll(() => stored().has("renamed")).toBe(true);
+    await page.getByLabel("Remove renamed").click();
+    await expect.poll(() => stored().has("renamed")).toBe(false);
+    for (const name of ["renamed", "dragged"]) {
+      await page.keyboard.press("Control+z");
+      await expect.poll(() => stored().has(name)).toBe(true);
+    }
+    await page.keyboard.press("Control+z"); // the drag
+    await expect.poll(() => stored().get("dragged")![0]! - placed[0]!).toBeCloseTo(0, 3);
+  });
+  test("a second window sees the change; closing one loses nothing", async () => {
+    const { page: second } = await open(browser, server.url);
+    await second.waitForSelector(".landmarks li");
+    await second.getByLabel("Name of the landmark").fill("from_the_second");
+    await second.click("[data-testid=place]");
+    await expect.poll(() => stored().has("from_the_second")).toBe(true);
+    await expect.poll(() => page.locator(".landmarks .name:text-is('from_the_second')").count()).toBe(1);
+    await second.close();
+    // landmarks that help nobody would mislead the segmentation
+    for (const name of ["from_the_second", ...(await page.locator(".landmarks .name").allInnerTexts())].filter((n, i, all) => !n.endsWith("_right") && all.indexOf(n) === i))
+      await page.getByLabel(`Remove ${name}`, { exact: true }).click();
+    await expect.poll(() => [...stored().keys()].every((name) => name.endsWith("_right"))).toBe(true);
+  });
+  test("a slice is ready in time", async () => {
+    const ms = await page.evaluate(() => {
+      const start = performance.now();
+      for (let i = 0; i < 20; ++i) document.querySelectorAll("#slices canvas").forEach((canvas) => canvas.dispatchEvent(new WheelEvent("wheel", { deltaY: 1 })));
+      return (performance.now() - start) / 60;
+    });
+    expect(ms).toBeLessThan(50);
+  });
+  test("axe finds no serious fault", async () => {
+    await page.evaluate(axe.source);
+    const found = (await page.evaluate("axe.run()")) as axe.AxeResults;
+    expect(found.violations.filter((v) => v.impact === "serious" || v.impact === "critical").map((v) => `${v.id} ${v.nodes[0]?.html}`)).toEqual([]);
+    await page.screenshot({ path: picture("image_1280_light") });
+  });
+  test("a run can be stopped", async () => {
+    await page.click("[data-testid=segment]");
+    await page.waitForSelector("section[data-state=running]");
+    await page.click("#side button:has-text('Stop')");
+    await page.waitForSelector("section[data-state=cancelled]", { timeout: 30_000 });
+    expect(existsSync(resolve(folder, "segment"))).toBe(false);
+  });
+  test("the segmentation runs with progress, and its contours appear", async () => {
+    await page.click("[data-testid=segment]");
+    await page.waitForSelector("section[data-state=running]");
+    await expect.poll(() => page.innerText("#side section p"), { timeout: 60_000 }).toMatch(/\d+ %.*so far/);
+    // the page comes back by itself with the surfaces
+    await page.waitForFunction(() => document.querySelectorAll("[data-layer]").length === 4, null, { timeout: 200_000 });
+    expect(existsSync(resolve(folder, "segment/femur.vtp"))).toBe(true);
+    await page.click("#tab-image");
+    await page.waitForSelector("#slices canvas");
+    await page.waitForTimeout(1000);
+    await page.screenshot({ path: picture("segmented_1280_light") });
+    expect(faults).toEqual([]);
+  }, 240_000);
+});

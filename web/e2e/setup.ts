@@ -1,0 +1,99 @@
+import { execFileSync, spawn, type ChildProcess } from "node:child_process";
+import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { resolve } from "node:path";
+import { chromium, type Browser, type Page } from "playwright-core";
+
+const root = resolve(new URL(".", import.meta.url).pathname, "../..");
+export const coxa = process.env["COXA_BINARY"] ?? resolve(root, "build/release/coxa");
+/** Where the case and the pictures are kept between runs. */
+export const folder = process.env["COXA_E2E_DIR"] ?? resolve(root, "build/web-e2e");
+
+/** A small real case: a virtual patient, its MRI, and the whole chain run on it; kept while its inputs stay. */
+export function prepareCase(): string {
+  const patient = resolve(folder, "patient");
+  if (!existsSync(resolve(patient, "subject.toml"))) {
+    mkdirSync(folder, { recursive: true });
+    execFileSync(coxa, ["phantom", "--seed", "3", "--voxel", "1.5", "--out", patient, "--quiet"], { stdio: "inherit" });
+    const file = resolve(patient, "subject.toml");
+    const text = readFileSync(file, "utf8")
+      .replace(/frames = .*/, "frames = 4")
+      .replace(/max_tets = .*/, "max_tets = 2000")
+      .replace(/pattern = .*/, 'pattern = "flexion"');
+    writeFileSync(file, text);
+  }
+  const result = resolve(folder, "result");
+  execFileSync(coxa, ["run", resolve(patient, "subject.toml"), "--out", result, "--resume", "--quiet"], { stdio: "inherit" });
+  for (const left of ["landmarks.mrk.json", "movements"]) rmSync(resolve(result, left), { recursive: true, force: true });
+  return result;
+}
+
+/** A subject just begun: the image alone, and landmarks that are still to be placed or are there. */
+export function beginSubject(name: string, withLandmarks: boolean): string {
+  const target = resolve(folder, name);
+  rmSync(target, { recursive: true, force: true });
+  mkdirSync(target, { recursive: true });
+  cpSync(resolve(folder, "patient/image.nii.gz"), resolve(target, "image.nii.gz"));
+  if (withLandmarks) cpSync(resolve(folder, "patient/landmarks.mrk.json"), resolve(target, "landmarks.mrk.json"));
+  return target;
+}
+
+export interface Served {
+  url: string;
+  port: number;
+  stop(): Promise<void>;
+}
+
+/** coxa view on a folder. */
+export async function serve(subject: string, port = 0): Promise<Served> {
+  const child: ChildProcess = spawn(coxa, ["view", subject, "--port", String(port), "--json"], { stdio: ["ignore", "pipe", "inherit"] });
+  const url = await new Promise<string>((done, fail) => {
+    let text = "";
+    child.stdout?.on("data", (chunk: Buffer) => {
+      text += chunk.toString();
+      const line = /\{"address":"([^"]+)"\}/.exec(text);
+      if (line?.[1]) done(line[1]);
+    });
+    child.on("exit", (code) => fail(new Error(`coxa view ended with ${code}`)));
+  });
+  const stop = (): Promise<void> =>
+    new Promise((done) => {
+      if (child.exitCode !== null || child.signalCode !== null) return done();
+      child.once("exit", () => done());
+      child.kill("SIGTERM");
+    });
+  return { url, port: Number(new URL(url).port), stop };
+}
+
+export function launch(): Promise<Browser> {
+  return chromium.launch({
+    executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
+    // no GPU here: the 3D view is drawn in software; chromium refuses its sandbox as root
+    args: ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader"],
+  });
+}
+
+export interface Opened {
+  page: Page;
+  faults: string[]; // what the page's console complained of
+}
+
+export async function open(browser: Browser, url: string, options: { width?: number; height?: number; dark?: boolean } = {}): Promise<Opened> {
+  const page = await browser.newPage({
+    viewport: { width: options.width ?? 1280, height: options.height ?? 800 },
+    colorScheme: options.dark ? "dark" : "light",
+  });
+  const faults: string[] = [];
+  page.on("pageerror", (error) => faults.push(error.message));
+  page.on("console", (message) => {
+    if (message.type() === "error") faults.push(message.text());
+  });
+  page.setDefaultTimeout(60_000);
+  await page.goto(url);
+  await page.waitForFunction(() => document.body.dataset["ready"] === "yes", null, { timeout: 120_000 });
+  return { page, faults };
+}
+
+export function picture(name: string): string {
+  mkdirSync(resolve(folder, "screenshots"), { recursive: true });
+  return resolve(folder, "screenshots", `${name}.png`);
+}
