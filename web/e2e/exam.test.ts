@@ -61,20 +61,20 @@ describe("the live examination", () => {
   });
   test("is led by the keyboard, recorded, saved as a movement and replayed", async () => {
     rmSync(resolve(folder, "movements"), { recursive: true, force: true });
-    await page.click("text=Record");
+    await page.click("button:text-is('Record')");
     await page.focus("[data-axis=flexion_deg]");
     for (let i = 0; i < 4; ++i) {
       const count = Number(/(\d+) poses/.exec((await page.locator("#panel p.note", { hasText: "poses" }).innerText()))?.[1]);
       await page.keyboard.press("ArrowRight");
       await expect.poll(async () => Number(/(\d+) poses/.exec(await page.locator("#panel p.note", { hasText: "poses" }).innerText())?.[1]), { timeout: 20_000 }).toBeGreaterThan(count);
     }
-    await page.click("text=Stop");
+    await page.click("button:text-is('Stop')");
     await page.getByLabel("Name of the movement").fill("by_hand");
-    await page.click("text=Save movement");
+    await page.click("button:text-is('Save movement')");
     await expect.poll(() => page.innerText("#status")).toContain("movements/by_hand.toml");
     const text = readFileSync(resolve(folder, "movements/by_hand.toml"), "utf8");
     expect(text).toContain("flexion_deg");
-    await page.click("text=Replay");
+    await page.click("button:text-is('Replay')");
     await page.waitForTimeout(300);
     expect(existsSync(resolve(folder, "movements/by_hand.toml"))).toBe(true);
   });

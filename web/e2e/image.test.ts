@@ -63,7 +63,6 @@ describe("from an MRI", () => {
     // moved by dragging it in the axial slice
     const box = (await slice(0).boundingBox())!;
     await slice(0).click({ position: { x: box.width / 2, y: box.height / 2 } });
-    await page.click("[data-testid=place] >> nth=0");
     await page.getByLabel("Name of the landmark").fill("dragged");
     await page.click("[data-testid=place]");
     await expect.poll(() => stored().has("dragged")).toBe(true);
@@ -76,7 +75,7 @@ describe("from an MRI", () => {
 
     await page.click(".landmarks .name:text-is('dragged')");
     await page.getByLabel("Name of the landmark").fill("renamed");
-    await page.click("text=Rename");
+    await page.click("button:text-is('Rename')");
     await expect.poll(() => stored().has("renamed")).toBe(true);
     await page.getByLabel("Remove renamed").click();
     await expect.poll(() => stored().has("renamed")).toBe(false);

@@ -20,6 +20,7 @@ export class FieldChoice {
   scale: Scale | null = null;
   field: string | null = null;
   private map: MapName = "viridis";
+  private readonly ranges = new Map<string, [number, number]>();
   private mode: RangeMode = "fixed";
   private readonly low = make("input", { type: "number", step: "any", "aria-label": "Lowest value", disabled: true });
   private readonly high = make("input", { type: "number", step: "any", "aria-label": "Highest value", disabled: true });
@@ -74,9 +75,18 @@ export class FieldChoice {
     return known ? `${known.label}${known.unit ? ` [${known.unit}]` : ""}` : readable(field);
   }
 
+  /** Over all frames that are here; worked out again only when another has come. */
+  private fixedRange(field: string): [number, number] {
+    const frames = this.frames();
+    const key = `${field} ${frames.length}`;
+    let found = this.ranges.get(key);
+    if (!found) this.ranges.set(key, (found = this.hip.range(field, frames)));
+    return found;
+  }
+
   private scaleOf(field: string): Scale {
     const typed: [number, number] = [this.low.valueAsNumber, this.high.valueAsNumber];
-    let [low, high] = this.hip.range(field, this.mode === "fixed" ? this.frames() : []);
+    let [low, high] = this.mode === "fixed" ? this.fixedRange(field) : this.hip.range(field, []);
     if (this.mode === "own" && typed[1] > typed[0]) [low, high] = typed;
     else {
       this.low.value = low.toPrecision(3);

@@ -6,6 +6,7 @@ import { shortNumber } from "../core/numbers";
 import { flattened, sectorMeans, sectorOf } from "./clock";
 
 const kArticular = 2; // FacetTag::articular_side
+const kLevels = 64; // of colour
 const kShown = 1.25; // right angles from the pole at the edge of the picture
 
 /** The acetabular joint surface flattened on a clock face, coloured by a field, with means by hour below. */
@@ -94,17 +95,26 @@ export class ClockMap {
   private drawTriangles(context: CanvasRenderingContext2D, middle: number, unit: number, shown: { values: Float32Array; scale: Scale }): void {
     const x = (v: number): number => middle + unit * (this.flat[2 * v] ?? 0);
     const y = (v: number): number => middle - unit * (this.flat[2 * v + 1] ?? 0);
+    // one path a colour: thousands of single fills would cost more than a frame may
+    const paths = new Map<number, Path2D>();
     for (let t = 0; t + 2 < this.corners.length; t += 3) {
-      const [a = 0, b = 0, c = 0] = this.corners.slice(t, t + 3);
+      const a = this.corners[t] ?? 0;
+      const b = this.corners[t + 1] ?? 0;
+      const c = this.corners[t + 2] ?? 0;
       const mean = ((shown.values[a] ?? NaN) + (shown.values[b] ?? NaN) + (shown.values[c] ?? NaN)) / 3;
-      context.beginPath();
-      context.moveTo(x(a), y(a));
-      context.lineTo(x(b), y(b));
-      context.lineTo(x(c), y(c));
-      context.closePath();
-      context.fillStyle = context.strokeStyle = css(mapColour(shown.scale.map, share(shown.scale, mean)));
-      context.fill();
-      context.stroke(); // closes the hairlines between neighbours
+      const at = share(shown.scale, mean);
+      const level = Number.isNaN(at) ? -1 : Math.round(Math.min(1, Math.max(0, at)) * kLevels);
+      let path = paths.get(level);
+      if (!path) paths.set(level, (path = new Path2D()));
+      path.moveTo(x(a), y(a));
+      path.lineTo(x(b), y(b));
+      path.lineTo(x(c), y(c));
+      path.closePath();
+    }
+    for (const [level, path] of paths) {
+      context.fillStyle = context.strokeStyle = css(mapColour(shown.scale.map, level < 0 ? NaN : level / kLevels));
+      context.fill(path);
+      context.stroke(path); // closes the hairlines between neighbours
     }
   }
 }

@@ -2,6 +2,7 @@ import * as THREE from "three";
 import { acceleratedRaycast, MeshBVH } from "three-mesh-bvh";
 import { mapColour, noValue, type MapName, type Rgb } from "../colour/maps";
 import { share, type Scale } from "../colour/scale";
+import { vertexNormals } from "./normals";
 
 const kColours = 256;
 
@@ -30,6 +31,7 @@ export class SurfaceLayer {
   private readonly plain: THREE.MeshLambertMaterial;
   private readonly coloured: THREE.MeshLambertMaterial;
   private readonly positions: THREE.BufferAttribute;
+  private readonly normals: THREE.BufferAttribute;
   private bvh: MeshBVH | null = null;
   private bvhStale = false;
 
@@ -44,7 +46,9 @@ export class SurfaceLayer {
     geometry.setAttribute("position", this.positions);
     geometry.setAttribute("uv", new THREE.BufferAttribute(new Float32Array((positions.length / 3) * 2), 2));
     geometry.setIndex(new THREE.BufferAttribute(triangles.slice(), 1));
-    geometry.computeVertexNormals();
+    this.normals = new THREE.BufferAttribute(new Float32Array(positions.length), 3);
+    geometry.setAttribute("normal", this.normals);
+    vertexNormals(positions, triangles, this.normals.array as Float32Array);
     this.plain = new THREE.MeshLambertMaterial({ color: new THREE.Color(`rgb(${colour.join(",")})`), side: THREE.DoubleSide });
     this.coloured = new THREE.MeshLambertMaterial({ side: THREE.DoubleSide });
     this.mesh = new THREE.Mesh(geometry, this.plain);
@@ -59,7 +63,8 @@ export class SurfaceLayer {
   update(positions: Float32Array): void {
     (this.positions.array as Float32Array).set(positions);
     this.positions.needsUpdate = true;
-    this.mesh.geometry.computeVertexNormals();
+    vertexNormals(positions, this.triangles, this.normals.array as Float32Array);
+    this.normals.needsUpdate = true;
     this.mesh.geometry.boundingSphere = null;
     this.bvhStale = true;
   }
