@@ -189,6 +189,7 @@ FoundPose find_pose(const std::vector<const shape::StructureModel*>& bones,
   std::vector<Candidate> candidates = all_candidates(probes, image.volume);
   require(!candidates.empty(), "the image is too small to look for a hip in");
   parallel_for(static_cast<std::int64_t>(candidates.size()), [&](Index i) {
+    if (monitor.cancelled()) return;  // a large image has hundreds of thousands
     Candidate& candidate = candidates[static_cast<std::size_t>(i)];
     candidate.score = score_at(probes, image, candidate);
   });
