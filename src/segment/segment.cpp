@@ -5,6 +5,7 @@
 
 #include <coxa/core/error.h>
 #include <coxa/segment/evolve.h>
+#include <coxa/segment/lay_on_hosts.h>
 #include <coxa/segment/layer_search.h>
 #include <coxa/segment/placement.h>
 #include <coxa/segment/pose_search.h>
@@ -193,6 +194,18 @@ class Hip {
   const std::vector<PreparedImage>& images() const { return images_; }
   bool is_bone(std::size_t s) const { return !hosts_[s].has_value(); }
 
+  /// The surfaces of all bodies, with the layers laid on their bones.
+  std::vector<Surface> surfaces() const {
+    std::vector<Surface> surfaces;
+    for (const Body& body : bodies_) surfaces.push_back(surface_of(body));
+    std::vector<LaidLayer> layers;
+    for (std::size_t s = 0; s < bodies_.size(); ++s) {
+      if (hosts_[s]) layers.push_back({&surfaces[s].mesh, &surfaces[*hosts_[s]].mesh});
+    }
+    lay_on_hosts(layers, options_.minimum_gap);
+    return surfaces;
+  }
+
   /// Whether the caller asked for it, or only something that lies on it needs it.
   bool is_asked_for(std::size_t s) const {
     const auto& names = options_.structures;
@@ -272,6 +285,7 @@ std::map<std::string, double> landmark_distances(const Hip& hip, const shape::At
 SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& options) {
   SegmentResult result;
   double bone_confidence = 0.0, n_bones = 0.0;
+  const std::vector<Surface> surfaces = hip.surfaces();
   for (std::size_t s = 0; s < hip.bodies().size(); ++s) {
     const Body& body = hip.bodies()[s];
     const StructureQuality quality = quality_of(body);
@@ -285,7 +299,7 @@ SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& optio
       result.warnings.push_back(
           join_text(body.model->name, " was found with low confidence, ", quality.confidence));
     }
-    Surface surface = surface_of(body);
+    const Surface& surface = surfaces[s];
     result.surfaces[body.model->name] = side == Side::left ? mirrored(surface) : surface;
     if (quality.in_view < 0.5) {
       result.warnings.push_back(join_text("only ", std::lround(100.0 * quality.in_view), " % of ",

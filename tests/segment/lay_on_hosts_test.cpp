@@ -1,0 +1,71 @@
+#include <coxa/segment/lay_on_hosts.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/shapes.h"
+
+namespace coxa::segment {
+
+TriMesh turned_over(TriMesh mesh) {
+  mesh.triangles.col(1).swap(mesh.triangles.col(2));
+  return mesh;
+}
+
+TriMesh together(const TriMesh& a, const TriMesh& b) {
+  TriMesh both = a;
+  both.points.conservativeResize(a.n_vertices() + b.n_vertices(), 3);
+  both.points.bottomRows(b.n_vertices()) = b.points;
+  both.triangles.conservativeResize(a.n_triangles() + b.n_triangles(), 3);
+  both.triangles.bottomRows(b.n_triangles()) = b.triangles.array() + a.n_vertices();
+  return both;
+}
+
+/// A spherical shell, outward: its first half of vertices on the inner sphere.
+TriMesh shell(double inner, double outer) {
+  return together(turned_over(test::icosphere(4, inner)), test::icosphere(4, outer));
+}
+double mean_radius(const Points& points) { return points.rowwise().norm().mean(); }
+
+class LayOnHosts : public ::testing::Test {
+ protected:
+  void lay(double gap) {
+    std::vector<LaidLayer> layers{{&inner_, &ball_}, {&outer_, &cup_}};
+    lay_on_hosts(layers, gap);
+  }
+  Index half() const { return inner_.n_vertices() / 2; }
+  const TriMesh ball_ = test::icosphere(4, 20.0);
+  const TriMesh cup_ = turned_over(test::icosphere(4, 23.0));
+  TriMesh inner_ = shell(19.8, 22.0), outer_ = shell(21.5, 23.2);
+};
+
+TEST_F(LayOnHosts, SeatsTheFacingSidesAndSharesTheRoomByThickness) {
+  lay(0.1);
+  const double seat = 0.05, room = 3.0 - 0.1 - 2 * seat, inner = 1.95, outer = 1.45;
+  EXPECT_NEAR(mean_radius(inner_.points.topRows(half())), 20.0 + seat, 0.02);
+  EXPECT_NEAR(mean_radius(inner_.points.bottomRows(half())),
+              20.0 + seat + room * inner / (inner + outer), 0.03);
+  EXPECT_NEAR(mean_radius(outer_.points.topRows(half())),
+              23.0 - seat - room * outer / (inner + outer), 0.03);
+  EXPECT_NEAR(mean_radius(outer_.points.bottomRows(half())), 23.0 - seat, 0.02);
+  EXPECT_GT(
+      mean_radius(outer_.points.topRows(half())) - mean_radius(inner_.points.bottomRows(half())),
+      0.07);
+}
+TEST_F(LayOnHosts, LeavesTheFarSideWhereThereIsRoom) {
+  inner_ = shell(20.05, 21.0);
+  outer_ = shell(22.0, 22.95);
+  lay(0.1);
+  EXPECT_NEAR(mean_radius(inner_.points.bottomRows(half())), 21.0, 0.02);
+  EXPECT_NEAR(mean_radius(outer_.points.topRows(half())), 22.0, 0.02);
+}
+TEST_F(LayOnHosts, BringsAFloatingLayerDown) {
+  inner_ = shell(21.0, 22.0);
+  std::vector<LaidLayer> layers{{&inner_, &ball_}};
+  lay_on_hosts(layers, 0.0);
+  // its own thickness, and the third of a millimetre that a height is believed beyond it
+  EXPECT_NEAR(mean_radius(inner_.points.bottomRows(half())), 20.05 + 1.3, 0.02);
+}
+
+}  // namespace coxa::segment
