@@ -41,6 +41,7 @@ describe("from an MRI", () => {
     await expect.poll(async () => (await focus()).length).toBe(3);
   });
   test("slices are linked: a click moves the cross-hair of all, wheel and keys change slices", async () => {
+    await slice(0).click({ position: { x: 80, y: 80 } });
     const before = await focus();
     await slice(0).click({ position: { x: 60, y: 60 } });
     const clicked = await focus();
@@ -62,14 +63,15 @@ describe("from an MRI", () => {
 
     // moved by dragging it in the axial slice
     const box = (await slice(0).boundingBox())!;
-    await slice(0).click({ position: { x: box.width / 2, y: box.height / 2 } });
+    const from = [0.3 * box.width, 0.75 * box.height] as const; // away from the other landmarks
+    await slice(0).click({ position: { x: from[0], y: from[1] } });
     await page.getByLabel("Name of the landmark").fill("dragged");
     await page.click("[data-testid=place]");
     await expect.poll(() => stored().has("dragged")).toBe(true);
     const placed = stored().get("dragged")!;
-    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.move(box.x + from[0], box.y + from[1]);
     await page.mouse.down();
-    await page.mouse.move(box.x + box.width / 2 + 30, box.y + box.height / 2, { steps: 5 });
+    await page.mouse.move(box.x + from[0] + 30, box.y + from[1], { steps: 5 });
     await page.mouse.up();
     await expect.poll(() => stored().get("dragged")![0]! - placed[0]!).toBeGreaterThan(5);
 

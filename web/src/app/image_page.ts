@@ -156,6 +156,8 @@ export class ImagePage {
     this.state.selected = name;
     this.nameInput.value = name;
     this.showList();
+    const place = this.list.landmarks.find((l) => l.name === name)?.position_lps_mm;
+    if (place) this.moveFocus(place);
   }
 
   private drag(name: string, place: Vec3, done: boolean): void {
@@ -204,10 +206,7 @@ export class ImagePage {
     this.redoButton.disabled = !this.list.canRedo;
     const entry = (landmark: Landmark): HTMLElement => {
       const chosen = landmark.name === this.state?.selected;
-      const name = button(landmark.name, () => {
-        this.select(landmark.name);
-        this.moveFocus(landmark.position_lps_mm);
-      }, { class: "name", "aria-pressed": String(chosen) });
+      const name = button(landmark.name, () => this.select(landmark.name), { class: "name", "aria-pressed": String(chosen) });
       const remove = button("×", () => this.changed(() => this.list.remove(landmark.name)), { class: "small", "aria-label": `Remove ${landmark.name}` });
       return make("li", {}, name, remove);
     };

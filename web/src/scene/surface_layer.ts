@@ -49,8 +49,8 @@ export class SurfaceLayer {
     this.normals = new THREE.BufferAttribute(new Float32Array(positions.length), 3);
     geometry.setAttribute("normal", this.normals);
     vertexNormals(positions, triangles, this.normals.array as Float32Array);
-    this.plain = new THREE.MeshLambertMaterial({ color: new THREE.Color(`rgb(${colour.join(",")})`), side: THREE.DoubleSide });
-    this.coloured = new THREE.MeshLambertMaterial({ side: THREE.DoubleSide });
+    this.plain = new THREE.MeshLambertMaterial({ color: new THREE.Color(`rgb(${colour.join(",")})`) });
+    this.coloured = new THREE.MeshLambertMaterial();
     this.mesh = new THREE.Mesh(geometry, this.plain);
     this.mesh.name = name;
     this.mesh.raycast = acceleratedRaycast;
@@ -102,8 +102,12 @@ export class SurfaceLayer {
   }
 
   setClipping(planes: THREE.Plane[]): void {
-    this.plain.clippingPlanes = planes;
-    this.coloured.clippingPlanes = planes;
+    for (const material of [this.plain, this.coloured]) {
+      material.clippingPlanes = planes;
+      // closed surfaces show their inside only where they are cut open
+      material.side = planes.length > 0 ? THREE.DoubleSide : THREE.FrontSide;
+      material.needsUpdate = true;
+    }
   }
 
   /** Row-wise rotation, then translation: as the server gives poses. */

@@ -46,6 +46,8 @@ export class Viewer {
   private clipping = false;
   private halfHeight = 80;
   private queued = false;
+  private unfinished: WebGLSync | null = null;
+  private wantedAgain = false;
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.software = drawsInSoftware();
@@ -169,13 +171,34 @@ export class Viewer {
 
   private draw(): void {
     this.queued = false;
+    // one picture at a time: without a graphics card they would pile up
+    if (this.unfinished) {
+      this.wantedAgain = true;
+      return;
+    }
     const start = performance.now();
     this.renderer.render(this.scene, this.camera);
-    if (this.onDrawn) {
-      // reading one pixel waits until the picture is really drawn
-      const gl = this.renderer.getContext();
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-      this.onDrawn(performance.now() - start);
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    this.unfinished = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    this.awaitPicture(gl, start);
+  }
+
+  /** Asks now and then whether the picture is drawn, so that nothing else has to wait for it. */
+  private awaitPicture(gl: WebGL2RenderingContext, start: number): void {
+    const fence = this.unfinished;
+    if (!fence) return;
+    const drawn = gl.clientWaitSync(fence, 0, 0);
+    if (drawn === gl.TIMEOUT_EXPIRED) {
+      setTimeout(() => this.awaitPicture(gl, start), 4);
+      return;
+    }
+    gl.deleteSync(fence);
+    this.unfinished = null;
+    this.onDrawn?.(performance.now() - start);
+    if (this.wantedAgain) {
+      this.wantedAgain = false;
+      this.invalidate();
     }
   }
 

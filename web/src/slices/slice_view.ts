@@ -234,8 +234,11 @@ export class SliceView {
     this.canvas.addEventListener("pointerdown", (event) => this.onDown(event));
     this.canvas.addEventListener("pointermove", (event) => this.onMove(event));
     this.canvas.addEventListener("pointerup", (event) => {
-      if (this.drag?.kind === "landmark" && this.drag.name) this.events.moveLandmark(this.drag.name, this.fromScreen(event.offsetX, event.offsetY), true);
+      const { drag } = this;
       this.drag = null;
+      if (drag?.kind === "landmark" && drag.name && this.dragged(drag, event)) {
+        this.events.moveLandmark(drag.name, this.fromScreen(event.offsetX, event.offsetY), true);
+      }
     });
     this.canvas.addEventListener("keydown", (event) => {
       const steps: Record<string, [0 | 1 | 2, number]> = {
@@ -268,10 +271,17 @@ export class SliceView {
     }
   }
 
+  /** A hand that trembles on a click moves nothing. */
+  private dragged(drag: { x: number; y: number }, event: PointerEvent): boolean {
+    return Math.hypot(event.offsetX - drag.x, event.offsetY - drag.y) > 2;
+  }
+
   private onMove(event: PointerEvent): void {
     if (!this.drag) return;
     if (this.drag.kind === "focus") this.events.moveFocus(this.fromScreen(event.offsetX, event.offsetY));
-    if (this.drag.kind === "landmark" && this.drag.name) this.events.moveLandmark(this.drag.name, this.fromScreen(event.offsetX, event.offsetY), false);
+    if (this.drag.kind === "landmark" && this.drag.name && this.dragged(this.drag, event)) {
+      this.events.moveLandmark(this.drag.name, this.fromScreen(event.offsetX, event.offsetY), false);
+    }
     if (this.drag.kind === "window") {
       // across: width; up and down: level
       const [low, high] = this.drag.window;
