@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kSmallestRow = 0.6;    // mm: cells beside a knife edge are not made smaller
 constexpr double kSmallestShare = 0.5;  // of the size by thickness: floor for cells at bends
+constexpr double kLeastShare = 0.2;     // of the typical cell: floor where there is no thickness
 constexpr double kEnlarge = 1.04;       // step in the search for the number of cells
 constexpr int kMaxSteps = 200;
 
@@ -108,8 +109,10 @@ CellSizing sizing_for(SheetGrid& grid, const SizeBasis& basis, const MedialOptio
   CellSizing sizing{options.cell_per_thickness,
                     std::max(options.smallest_cell, 1e-3 * options.largest_cell),
                     options.largest_cell, 1.0, options.gradation};
-  update_sizes(grid, basis, sizing);
   const double typical = options.cell_per_thickness * median_thickness(grid, basis);
+  // places without thickness would ask for cells without number
+  sizing.smallest = std::max(sizing.smallest, kLeastShare * typical);
+  update_sizes(grid, basis, sizing);
   for (int step = 0; step < kMaxSteps && expected_cells(grid) > options.max_cells; ++step) {
     if (sizing.smallest < typical) {
       sizing.smallest = std::min(typical, std::max(kEnlarge * sizing.smallest, 0.25 * typical));

@@ -3,6 +3,7 @@
 #include <coxa/medial/face_pair.h>
 #include "cell_sizing.h"
 #include "sheet_grid.h"
+#include "starting_grid.h"
 
 #include <coxa/core/error.h>
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double kSplit = 4.0 / 3.0;     // edges longer than this times the wanted length are split
 constexpr double kCollapse = 4.0 / 5.0;  // and shorter ones collapsed (Botsch and Kobbelt 2004)
+constexpr double kTiny = 0.4;            // the same once cells are only evened
 constexpr double kCornerShare = 0.1;     // of a cell: height from which a border bend is a corner
 constexpr double kSmallestCorner = 0.06;  // mm
 constexpr double kRelax = 0.8;            // share of the step to the weighted centre
@@ -34,25 +36,6 @@ void check(const MedialOptions& o) {
   require(o.chord_error > 0, "chord_error must be > 0 mm, got ", o.chord_error);
   require(o.max_cells >= 8, "max_cells must be >= 8, got ", o.max_cells);
   require(o.iterations >= 1, "iterations must be >= 1, got ", o.iterations);
-}
-
-SheetGrid first_grid(const TriMesh& face) {
-  std::vector<Vec3> nodes;
-  for (Index v = 0; v < face.n_vertices(); ++v) nodes.emplace_back(face.points.row(v));
-  // turned over: cells are counter-clockwise seen from the second face
-  std::vector<SheetGrid::Cell> cells;
-  for (Index t = 0; t < face.n_triangles(); ++t) {
-    cells.push_back({face.triangles(t, 0), face.triangles(t, 2), face.triangles(t, 1)});
-  }
-  return SheetGrid(std::move(nodes), cells);
-}
-
-// radial forces: every node to the middle between the faces, border nodes to the rim
-void centre(SheetGrid& grid, const FacePair& faces) {
-  for (Index v = 0; v < grid.n_nodes(); ++v) {
-    if (grid.alive(v))
-      grid.x[at(v)] = grid.rim[at(v)] ? faces.on_rim(grid.x[at(v)]) : faces.centred(grid.x[at(v)]);
-  }
 }
 
 // pins border nodes that a chord between the border half a cell before and after would miss by far
@@ -92,15 +75,20 @@ void split_long_edges(SheetGrid& grid, const FacePair& faces) {
   }
 }
 
-void collapse_short_edges(SheetGrid& grid, const FacePair& faces) {
+// edges shorter than `share` of the wanted length; where the sheet is crumpled, the faces say how
+// its cells should look
+void collapse_short_edges(SheetGrid& grid, const FacePair& faces, double share) {
+  constexpr double kCrumpled = 0.35;
   for (auto [a, b] : edges_by_length(grid, false)) {
-    if (relative_length(grid, a, b) >= kCollapse || !grid.has_edge(a, b)) continue;
+    const double length = relative_length(grid, a, b);
+    if (length >= share || !grid.has_edge(a, b)) continue;
     if (grid.pinned[at(a)] && grid.pinned[at(b)]) continue;
     if (grid.rim[at(b)] > grid.rim[at(a)] || grid.pinned[at(b)]) std::swap(a, b);
     const bool both = grid.rim[at(a)] == grid.rim[at(b)] && !grid.pinned[at(a)];
     Vec3 place = both ? Vec3(0.5 * (grid.x[at(a)] + grid.x[at(b)])) : grid.x[at(a)];
     if (both) place = grid.rim[at(a)] ? faces.on_rim(place) : faces.centred(place);
-    grid.collapse(a, b, place, kSplit);
+    if (!grid.collapse(a, b, place, kSplit) && length < kCrumpled)
+      grid.collapse(a, b, place, kSplit, faces.up(place));
   }
 }
 
@@ -164,6 +152,36 @@ void smooth(SheetGrid& grid, const FacePair& faces) {
   }
 }
 
+// the node of a cell at edge a-b that belongs to this cell only, if it is less than `low` away
+std::optional<Index> low_ear(const SheetGrid& grid, Index a, Index b, double low) {
+  const auto corners = grid.across(a, b);
+  for (const Index c : {corners->first, corners->second}) {
+    if (grid.around(c).size() != 1) continue;
+    const Vec3 edge = grid.x[at(b)] - grid.x[at(a)], offset = grid.x[at(c)] - grid.x[at(a)];
+    if (edge.cross(offset).norm() < low * edge.norm()) return c;
+  }
+  return std::nullopt;
+}
+
+// an edge inside the sheet must not join two nodes of its rim: at a knife edge the body would have
+// no height there. Turned if possible, else freed of a low ear, else split
+void part_rim_nodes(SheetGrid& grid, const FacePair& faces) {
+  constexpr double kLowEar = 0.3;  // mm
+  for (bool turning : {true, false}) {
+    for (const auto& [a, b] : grid.edges()) {
+      if (!grid.rim[at(a)] || !grid.rim[at(b)] || !grid.has_edge(a, b) || grid.on_border(a, b))
+        continue;
+      if (turning) {
+        grid.flip(a, b);
+      } else if (const auto ear = low_ear(grid, a, b, kLowEar)) {
+        grid.drop_ear(*ear);
+      } else {
+        grid.split(a, b, faces.centred(0.5 * (grid.x[at(a)] + grid.x[at(b)])));
+      }
+    }
+  }
+}
+
 MedialSheet to_sheet(SheetGrid& grid, const FacePair& faces) {
   grid.compact();
   MedialSheet sheet;
@@ -195,13 +213,16 @@ MedialSheet to_sheet(SheetGrid& grid, const FacePair& faces) {
 
 MedialSheet fit_medial_sheet(const TriMesh& surface, const SurfaceSides& sides,
                              const MedialOptions& options, const Monitor& monitor) {
-  check(options);
   require(sides.labels.size() == at(surface.n_triangles()),
           "sides must label every triangle: ", sides.labels.size(), " labels for ",
           surface.n_triangles(), " triangles");
-  const FacePair faces(surface, sides);
-  SheetGrid grid = first_grid(faces.first_face());
-  centre(grid, faces);
+  return fit_medial_sheet(FacePair(surface, sides), options, monitor);
+}
+
+MedialSheet fit_medial_sheet(const FacePair& faces, const MedialOptions& options,
+                             const Monitor& monitor) {
+  check(options);
+  SheetGrid grid = starting_grid(faces);
   const CellSizing sizing = sizing_for(grid, size_basis(grid, faces, options), options);
   pin_corners(grid, faces);
   for (int k = 0; k < options.iterations; ++k) {
@@ -209,14 +230,17 @@ MedialSheet fit_medial_sheet(const TriMesh& surface, const SurfaceSides& sides,
     monitor.progress("medial grid", static_cast<double>(k) / options.iterations);
     if (k > 0) update_sizes(grid, size_basis(grid, faces, options), sizing);
     const bool shaping = k < options.iterations - 3;
+    if (k == options.iterations - 3) part_rim_nodes(grid, faces);
     if (shaping) {
       split_long_edges(grid, faces);
-      collapse_short_edges(grid, faces);
+      collapse_short_edges(grid, faces, kCollapse);
     }
+    if (!shaping) collapse_short_edges(grid, faces, kTiny);
     flip_edges(grid, shaping);
     for (int s = 0; s < 3; ++s) smooth(grid, faces);
     flip_edges(grid, false);
   }
+  part_rim_nodes(grid, faces);
   return to_sheet(grid, faces);
 }
 

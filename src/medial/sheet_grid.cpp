@@ -131,7 +131,28 @@ Index SheetGrid::split(Index a, Index b, const Vec3& place) {
   return m;
 }
 
-bool SheetGrid::collapse(Index a, Index b, const Vec3& place, double limit) {
+bool SheetGrid::collapse_folds(Index a, Index b, const Vec3& place, const std::optional<Vec3>& up) {
+  for (const Index end : {a, b}) {
+    for (const Index c : around(end)) {
+      if (contains(cell(c), a) && contains(cell(c), b)) continue;
+      const Vec3 before = area_vector(cell(c));
+      const Vec3 old = x[at(end)];
+      x[at(end)] = place;
+      const Vec3 after = area_vector(cell(c));
+      x[at(end)] = old;
+      if (up) {
+        if (after.dot(*up) < kFold * after.norm()) return true;
+      } else if (after.dot(before) < kFold * after.norm() * before.norm() ||
+                 after.norm() < 0.05 * before.norm()) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool SheetGrid::collapse(Index a, Index b, const Vec3& place, double limit,
+                         const std::optional<Vec3>& up) {
   const std::vector<Index> pair = cells_at_edge(a, b);
   const std::vector<Index> na = neighbours(a), nb = neighbours(b);
   std::vector<Index> common;
@@ -147,20 +168,7 @@ bool SheetGrid::collapse(Index a, Index b, const Vec3& place, double limit) {
     if (v != a && (x[at(v)] - place).norm() > limit * 0.5 * (size[at(v)] + size[at(a)]))
       return false;
   }
-  for (const Index end : {a, b}) {
-    for (const Index c : around(end)) {
-      if (contains(cell(c), a) && contains(cell(c), b)) continue;
-      const Vec3 before = area_vector(cell(c));
-      const Vec3 old = x[at(end)];
-      x[at(end)] = place;
-      const Vec3 after = area_vector(cell(c));
-      x[at(end)] = old;
-      if (after.dot(before) < kFold * after.norm() * before.norm() ||
-          after.norm() < 0.05 * before.norm()) {
-        return false;
-      }
-    }
-  }
+  if (collapse_folds(a, b, place, up)) return false;
   for (const Index c : pair) remove_cell(c);
   const std::vector<Index> moving = around(b);
   for (const Index c : moving) {
@@ -187,7 +195,7 @@ bool SheetGrid::flip(Index a, Index b) {
   const auto corners = across(a, b);
   if (!corners) return false;
   const auto [c, d] = *corners;
-  if (c == d || has_edge(c, d)) return false;
+  if (c == d || has_edge(c, d) || (rim[at(c)] && rim[at(d)])) return false;
   const std::vector<Index> pair = cells_at_edge(a, b);
   const Vec3 mean = area_vector(cell(pair[0])) + area_vector(cell(pair[1]));
   const Cell one{a, d, c}, two{d, b, c};

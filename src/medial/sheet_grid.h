@@ -39,10 +39,15 @@ class SheetGrid {
   Index split(Index a, Index b, const Vec3& place);
   /// Moves b into a at `place` unless that would fold the sheet, break it, or make an edge longer
   /// than `limit` times the wanted length.
-  bool collapse(Index a, Index b, const Vec3& place, double limit);
+  /// @param up  unit normal the cells should have afterwards; without it they must not turn much
+  bool collapse(Index a, Index b, const Vec3& place, double limit,
+                const std::optional<Vec3>& up = std::nullopt);
   /// The corners across edge a-b (left, right of a -> b), if the edge is inside.
   std::optional<std::pair<Index, Index>> across(Index a, Index b) const;
-  /// Replaces edge a-b by the edge joining the two corners across; false if it would fold.
+  /// Removes the only cell of a node on the border.
+  void drop_ear(Index node) { remove_cell(around(node).front()); }
+  /// Replaces edge a-b by the edge joining the two corners across; false if it would fold, or join
+  /// two nodes of the border.
   bool flip(Index a, Index b);
   /// Drops dead nodes; returns old number -> new (-1 for dead).
   std::vector<Index> compact();
@@ -50,6 +55,7 @@ class SheetGrid {
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   std::vector<Index> cells_at_edge(Index a, Index b) const;
+  bool collapse_folds(Index a, Index b, const Vec3& place, const std::optional<Vec3>& up);
   Vec3 area_vector(const Cell& c) const;
   void remove_cell(Index c);
   Index add_cell(const Cell& c);

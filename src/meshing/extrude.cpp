@@ -212,6 +212,42 @@ void stack_cell(const std::array<Index, 3>& cell, int layers, const Plan& plan, 
 
 }  // namespace
 
+Index drop_inverted_cells(Extrusion& made) {
+  TetGrid& grid = made.grid;
+  std::vector<double> volumes(made.cells.size(), 0.0);
+  std::vector<char> bad(made.cells.size(), 0);
+  for (std::size_t t = 0; t < grid.tets.size(); ++t) {
+    const Tet& n = grid.tets[t];
+    const double volume =
+        volume6(grid.x[at(n[0])], grid.x[at(n[1])], grid.x[at(n[2])], grid.x[at(n[3])]);
+    volumes[at(made.cell_of[t])] += volume;
+    if (!(volume > 0.0)) bad[at(made.cell_of[t])] = 1;
+  }
+  std::vector<medial::SheetCell> good;
+  std::vector<double> weights;
+  std::vector<std::size_t> number;
+  for (std::size_t c = 0; c < bad.size(); ++c) {
+    if (bad[c]) continue;
+    good.push_back(made.cells[c]);
+    weights.push_back(volumes[c]);
+    number.push_back(c);
+  }
+  std::vector<char> kept(made.cells.size(), 0);
+  const std::vector<char> stays = medial::manifold_part(good, weights);
+  for (std::size_t i = 0; i < good.size(); ++i) kept[number[i]] = stays[i];
+  std::vector<Tet> tets;
+  std::vector<Index> cell_of;
+  for (std::size_t t = 0; t < grid.tets.size(); ++t) {
+    if (!kept[at(made.cell_of[t])]) continue;
+    tets.push_back(grid.tets[t]);
+    cell_of.push_back(made.cell_of[t]);
+  }
+  grid.tets = std::move(tets);
+  made.cell_of = std::move(cell_of);
+  grid.link();
+  return static_cast<Index>(std::count(kept.begin(), kept.end(), 0));
+}
+
 Extrusion extrude(const MedialSheet& sheet, const SlideGuide& guide, int layers) {
   Plan plan;
   plan.order_of = order_nodes(sheet);
@@ -221,7 +257,9 @@ Extrusion extrude(const MedialSheet& sheet, const SlideGuide& guide, int layers)
   made.n_reduced = plan_columns(sheet, layers, plan);
   add_nodes(sheet, guide, layers, plan, made.grid);
   for (Index c = 0; c < sheet.cells.rows(); ++c) {
-    stack_cell({sheet.cells(c, 0), sheet.cells(c, 1), sheet.cells(c, 2)}, layers, plan, made.grid);
+    made.cells.push_back({sheet.cells(c, 0), sheet.cells(c, 1), sheet.cells(c, 2)});
+    stack_cell(made.cells.back(), layers, plan, made.grid);
+    made.cell_of.resize(made.grid.tets.size(), c);
   }
   made.grid.link();
   return made;

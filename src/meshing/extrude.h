@@ -4,14 +4,21 @@
 #include "tet_grid.h"
 
 #include <coxa/medial/medial_sheet.h>
+#include <coxa/medial/sheet_part.h>
 
 namespace coxa::meshing {
 
 /// Tetrahedra extruded from a medial sheet.
 struct Extrusion {
   TetGrid grid;
-  Index n_reduced = 0;  ///< columns near the rim with fewer layers than asked for
+  Index n_reduced = 0;                   ///< columns near the rim with fewer layers than asked for
+  std::vector<medial::SheetCell> cells;  ///< of the sheet
+  std::vector<Index> cell_of;            ///< per tetrahedron of the grid
 };
+
+/// Drops the cells with inverted elements, and what then hangs together in a node only.
+/// @returns how many cells went
+Index drop_inverted_cells(Extrusion& made);
 
 /// Projects every node of the sheet to both faces, stacks `layers` layers between, and splits the
 /// prisms so that diagonals match.

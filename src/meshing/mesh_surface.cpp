@@ -49,9 +49,8 @@ void improve(TetGrid& grid, const SlideGuide& guide, int rounds, const Monitor& 
 }
 
 // sheet and extrusion of as many elements as allowed, or of as many as the thickness asks for
-Extrusion extrude_within(const TriMesh& surface, const medial::SurfaceSides& sides,
-                         const SlideGuide& guide, const MeshingOptions& options,
-                         const Monitor& monitor) {
+Extrusion extrude_within(const medial::FacePair& faces, const SlideGuide& guide,
+                         const MeshingOptions& options, const Monitor& monitor) {
   constexpr double kWellFilled =
       0.94;  // share of the elements allowed from which it is not tried again
   const int layers = options.layers.value_or(1);
@@ -60,7 +59,7 @@ Extrusion extrude_within(const TriMesh& surface, const medial::SurfaceSides& sid
   sheet_options.max_cells = std::max(8, options.max_tets / (3 * layers));
   std::optional<Extrusion> best;
   for (int attempt = 0; attempt < kSizeTries; ++attempt) {
-    const auto sheet = medial::fit_medial_sheet(surface, sides, sheet_options, monitor);
+    const auto sheet = medial::fit_medial_sheet(faces, sheet_options, monitor);
     Extrusion made = extrude(sheet, guide, layers);
     const double filled = static_cast<double>(made.grid.tets.size()) / options.max_tets;
     if (filled <= 1.0 && (!best || best->grid.tets.size() < made.grid.tets.size())) {
@@ -78,24 +77,45 @@ Extrusion extrude_within(const TriMesh& surface, const medial::SurfaceSides& sid
   return std::move(*best);
 }
 
+// until no element is inverted: by moving nodes, or where the sheet is crumpled by dropping cells
+void bring_back_inverted(Extrusion& made, const SlideGuide& guide, MeshingReport& report) {
+  constexpr int kTries = 6;
+  Index inverted = untangle(made.grid, guide), dropped = 0;
+  for (int k = 0; inverted > 0; ++k) {
+    inverted = untangle_freely(made.grid, guide);
+    if (inverted == 0) break;
+    if (k == kTries || 20 * dropped > static_cast<Index>(made.cells.size()))
+      fail(ErrorCode::below_quality, inverted, " elements stay inverted");
+    dropped = drop_inverted_cells(made);
+    inverted = count_inverted(made.grid);
+  }
+  if (dropped > 0)
+    report.notes.push_back(
+        join_text(dropped, " crumpled cells were left out, of ", made.cells.size()));
+}
+
 MeshingResult mesh_sheet(const TriMesh& surface, const medial::SurfaceSides& sides,
                          const MeshingOptions& options, const Monitor& monitor) {
-  const medial::FacePair faces(surface, sides);
-  const SlideGuide guide(surface, sides, faces, options.rim_rounding);
-  Extrusion made =
-      extrude_within(surface, sides, guide, options, part_of(monitor, "medial grid", 0.0, 0.6));
-  Index inverted = untangle(made.grid, guide);
-  if (inverted > 0) inverted = untangle_freely(made.grid, guide);
-  if (inverted > 0) fail(ErrorCode::below_quality, inverted, " elements stay inverted");
-  improve(made.grid, guide, options.improvement_rounds, part_of(monitor, "improve", 0.6, 1.0));
   MeshingResult result;
+  medial::FacePair faces(surface, sides);
+  if (const auto trimmed = medial::trimmed_sheet(faces)) {
+    faces.update_rim(*trimmed);
+    result.report.notes.push_back(
+        join_text("border zones too thin or narrow to be filled were cut away: ", trimmed->area,
+                  " mm², the border moved by up to ", trimmed->depth, " mm"));
+  }
+  const SlideGuide guide(surface, sides, faces, options.rim_rounding);
+  Extrusion made = extrude_within(faces, guide, options, part_of(monitor, "medial grid", 0.0, 0.6));
+  bring_back_inverted(made, guide, result.report);
+  improve(made.grid, guide, options.improvement_rounds, part_of(monitor, "improve", 0.6, 1.0));
   if (options.improvement_rounds > 0) raise_freely(made.grid, guide);
+  draw_back(made.grid, guide);
   const Index dropped = drop_poor_elements(made.grid);
   if (dropped > 0) {
     result.report.notes.push_back(
         join_text(dropped, " poor elements at the boundary were dropped"));
   }
-  if (const double departure = largest_departure(made.grid, guide); departure > 0.0) {
+  if (const double departure = largest_departure(made.grid, guide); departure > 1e-3) {
     result.report.notes.push_back(
         join_text("nodes left the surface by up to ", departure, " mm to make elements better"));
   }

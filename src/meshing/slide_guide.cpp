@@ -79,6 +79,15 @@ Vec3 triangle_normal(const TriangleTree& tree, Index t) {
   return (b - a).cross(c - a).normalized();
 }
 
+TriMesh joined(const TriMesh& a, const TriMesh& b) {
+  TriMesh both;
+  both.points.resize(a.points.rows() + b.points.rows(), 3);
+  both.points << a.points, b.points;
+  both.triangles.resize(a.triangles.rows() + b.triangles.rows(), 3);
+  both.triangles << a.triangles, b.triangles.array() + a.n_vertices();
+  return both;
+}
+
 }  // namespace
 
 SlideGuide::SlideGuide(const TriMesh& surface, const medial::SurfaceSides& sides,
@@ -87,7 +96,8 @@ SlideGuide::SlideGuide(const TriMesh& surface, const medial::SurfaceSides& sides
       rim_edge_(moved_inwards(faces, rounding)),
       first_creases_(creases_of(faces.first_face())),
       second_creases_(creases_of(faces.second_face())) {
-  TriMesh band = medial::face_of(surface, sides, medial::SideLabel::rim);
+  const TriMesh band =
+      joined(medial::face_of(surface, sides, medial::SideLabel::rim), faces.cut_wall());
   if (!band.empty()) band_.emplace(band.points, band.triangles);
   for (const auto& loop : rim_edge_.loops) {
     for (const Vec3& p : loop) {

@@ -106,4 +106,22 @@ Index raise_worst(TetGrid& grid, const SlideGuide& guide) {
   return moved;
 }
 
+void draw_back(TetGrid& grid, const SlideGuide& guide) {
+  constexpr int kRounds = 3;
+  constexpr double kGood = 1.0, kAtHome = 1e-6;  // rank; mm
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t v = 0; v < grid.x.size(); ++v) {
+      if (!(grid.reach[v] > 0.0) || grid.around[v].empty()) continue;
+      const Vec3 old = grid.x[v], home = guide.place(grid.kinds[v], old);
+      if ((home - old).norm() < kAtHome) continue;
+      const double wanted = std::min(kGood, worst_around(grid, static_cast<Index>(v), 0.0));
+      for (const double share : {1.0, 0.7, 0.4, 0.2}) {
+        grid.x[v] = old + share * (home - old);
+        if (worst_around(grid, static_cast<Index>(v), 0.0) >= wanted) break;
+        grid.x[v] = old;
+      }
+    }
+  }
+}
+
 }  // namespace coxa::meshing

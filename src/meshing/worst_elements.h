@@ -16,4 +16,8 @@ double element_rank(const TetGrid& grid, const Tet& tet);
 /// @returns how many nodes moved
 Index raise_worst(TetGrid& grid, const SlideGuide& guide);
 
+/// Draws nodes that were let go back to where their kinds keep them, as far as the elements around
+/// stay good, or as good as they are.
+void draw_back(TetGrid& grid, const SlideGuide& guide);
+
 }  // namespace coxa::meshing

@@ -3,6 +3,7 @@
 #include <coxa/core/types.h>
 #include <coxa/geom/triangle_tree.h>
 #include <coxa/medial/surface_sides.h>
+#include <coxa/medial/trim.h>
 #include <coxa/mesh/tri_mesh.h>
 
 #include <utility>
@@ -50,6 +51,8 @@ class FacePair {
   BallFeet feet(const Vec3& p) const;
   /// Moves p along the line between its feet until it is equally far from both faces.
   Vec3 centred(const Vec3& p) const;
+  /// Unit normal of the sheet near p, from the first face to the second; zero where it has none.
+  Vec3 up(const Vec3& p) const;
   /// The point of the medial border nearest to p, halfway between the two face borders.
   Vec3 on_rim(const Vec3& p) const { return rim_.nearest(p).point; }
   /// Feet of a border node: the nearest points of the two border curves.
@@ -57,6 +60,15 @@ class FacePair {
 
   /// The wedge between the faces near a rim point, a mean over about 1 mm.
   RimWedge rim_wedge(const Vec3& p) const;
+
+  /// Moves the rim to the border of a trimmed sheet; the faces stay as they are beyond it.
+  void update_rim(const TrimmedSheet& trimmed);
+
+  /// The sheet to start from, in the middle or near it, seen from the second face: the first face
+  /// turned over, or the trimmed sheet.
+  const TriMesh& start() const { return start_; }
+  /// The wall across the sheet where it was trimmed; empty otherwise.
+  const TriMesh& cut_wall() const { return cut_wall_; }
 
   const TriMesh& first_face() const { return first_face_; }
   const TriMesh& second_face() const { return second_face_; }
@@ -71,6 +83,7 @@ class FacePair {
   TriangleTree first_, second_;
   BorderCurve first_border_, second_border_, rim_;
   InwardField first_inward_, second_inward_;
+  TriMesh start_, cut_wall_;
 };
 
 /// The triangles with one label, vertices renumbered in order.

@@ -2,6 +2,7 @@
 
 #include <coxa/core/monitor.h>
 #include <coxa/core/types.h>
+#include <coxa/medial/face_pair.h>
 #include <coxa/medial/surface_sides.h>
 #include <coxa/mesh/tri_mesh.h>
 
@@ -49,5 +50,9 @@ struct MedialOptions {
 /// triangles here so that notches and holes need no cutting.
 MedialSheet fit_medial_sheet(const TriMesh& surface, const SurfaceSides& sides,
                              const MedialOptions& options = {}, const Monitor& monitor = {});
+
+/// The same between two faces whose rim may have been trimmed.
+MedialSheet fit_medial_sheet(const FacePair& faces, const MedialOptions& options = {},
+                             const Monitor& monitor = {});
 
 }  // namespace coxa::medial

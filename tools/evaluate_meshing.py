@@ -1,0 +1,122 @@
+#!/usr/bin/python3
+"""Meshes the cartilages of ../shared/data/libhip (or other surfaces) and prints the figures against the limits asked for.
+
+usage: evaluate_meshing.py --coxa build/release/coxa [--shared ../shared] [--layers N] [--tets N] [--only TEXT,…]
+                           [--work DIR] [--all-cartilages] [SURFACE …]
+
+Figures by ../shared/eval/mesh_quality.py; time is processor time of `coxa mesh`, so that neighbours on the machine do not count,
+and memory its largest resident set.  Default limits without --layers: those of the paper mesh; with it: of the mechanics mesh.
+"""
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+# figure: (limit, aim, +1 where more is better), for the mesh without layers; None: no aim
+PAPER = {"tets": (20000, None, -1), "aspect_mean": (0.72, 0.77, 1), "aspect_p05": (0.50, 0.60, 1), "aspect_min": (0.15, 0.25, 1),
+         "dihedral_min": (10, 15, 1), "dihedral_max": (165, 155, -1), "envelope_rms": (0.05, 0.03, -1),
+         "envelope_max": (0.30, 0.15, -1), "inverted": (0, None, -1), "manifold": (1, None, 1), "seconds": (5, None, -1),
+         "megabytes": (500, None, -1)}
+MECHANICS = {**PAPER, "tets": (90000, None, -1), "aspect_mean": (0.70, None, 1), "aspect_p05": (0.50, None, 1),
+             "aspect_min": (0.15, None, 1), "seconds": (15, None, -1), "megabytes": (1000, None, -1)}
+FORMATS = {"tets": "6.0f", "inverted": "3.0f", "manifold": "3.0f", "dihedral_min": "6.1f", "dihedral_max": "6.1f", "seconds": "5.1f",
+           "megabytes": "5.0f"}
+
+
+def cartilages(shared, every):
+    kinds = ("femoral", "acetabular", "sacroiliac") if every else ("femoral", "acetabular")
+    folder = shared / "data/libhip"
+    return sorted(p for kind in kinds for p in folder.glob(f"*/*/{kind}_cartilage.ply"))
+
+
+def run_mesh(coxa, surface, out, options):
+    """Processor seconds, megabytes; raises RuntimeError with the program's last words."""
+    command = [str(coxa), "mesh", "--surface", str(surface), "--out", str(out), *options]
+    log = out.with_suffix(".log")
+    with open(log, "w") as words:
+        process = subprocess.Popen(command, stdout=words, stderr=subprocess.STDOUT)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        raise RuntimeError(log.read_text().strip().splitlines()[-1])
+    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+
+
+def figures_of(judge, mesh, surface):
+    points, tets = judge.read_tets(str(mesh))
+    truth = judge.read_surface(str(surface))
+    volumes, dihedral, aspect = judge.quality(points, tets)
+    facets = judge.boundary(tets)
+    edges = np.sort(np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]]), axis=1)
+    counts = np.unique(edges, axis=0, return_counts=True)[1]
+    envelope = judge.to_polydata(points, facets)
+    there, back = judge.distances(judge.samples(truth), envelope), judge.distances(judge.samples(envelope), truth)
+    return {"tets": len(tets), "aspect_mean": aspect.mean(), "aspect_p05": np.percentile(aspect, 5), "aspect_min": aspect.min(),
+            "dihedral_min": dihedral.min(), "dihedral_max": dihedral.max(), "inverted": (volumes <= 0).sum(),
+            "envelope_rms": np.sqrt(np.mean(np.concatenate([there, back]) ** 2)), "envelope_max": max(there.max(), back.max()),
+            "manifold": int((counts == 2).all())}
+
+
+def missed(figures, limits, which):
+    return [k for k, bound in limits.items() if bound[which] is not None and bound[2] * figures[k] < bound[2] * bound[which]]
+
+
+def text_of(key, value):
+    return format(value, FORMATS.get(key, "6.3f"))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--coxa", type=pathlib.Path, default=ROOT / "build/release/coxa")
+    parser.add_argument("--shared", type=pathlib.Path, default=ROOT.parent / "shared")
+    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_meshing"))
+    parser.add_argument("--layers", type=int)
+    parser.add_argument("--tets", type=int)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--all-cartilages", action="store_true", help="sacroiliac ones too")
+    parser.add_argument("surfaces", nargs="*", type=pathlib.Path)
+    arguments = parser.parse_args()
+    sys.path.insert(0, str(arguments.shared / "eval"))
+    import mesh_quality as judge
+
+    arguments.work.mkdir(parents=True, exist_ok=True)
+    limits = MECHANICS if arguments.layers else PAPER
+    most = arguments.tets or limits["tets"][0]
+    options = ["--tets", str(most)] + (["--layers", str(arguments.layers)] if arguments.layers else [])
+    wanted = [w for w in arguments.only.split(",") if w]
+    surfaces = arguments.surfaces or cartilages(arguments.shared, arguments.all_cartilages)
+    rows, failures, n_surfaces = [], 0, 0
+    print(" ".join(limits), "| limits missed | aims missed")
+    for surface in surfaces:
+        name = "_".join(surface.with_suffix("").parts[-3:])
+        if wanted and not any(w in name for w in wanted):
+            continue
+        n_surfaces += 1
+        out = arguments.work / f"{name}.vtu"
+        try:
+            seconds, megabytes = run_mesh(arguments.coxa, surface, out, options)
+            figures = {**figures_of(judge, out, surface), "seconds": seconds, "megabytes": megabytes}
+        except RuntimeError as error:
+            print(f"{name:34s} FAILED {error}", flush=True)
+            failures += 1
+            continue
+        rows.append(figures)
+        over = missed(figures, limits, 0)
+        failures += bool(over)
+        print(f"{name:34s}", " ".join(text_of(k, figures[k]) for k in limits), "|", " ".join(over) or "none", "|",
+              " ".join(k for k in missed(figures, limits, 1) if k not in over) or "none", flush=True)
+    if rows:
+        for k, (_, _, more) in limits.items():
+            values = [r[k] for r in rows]
+            worst = min(values) if more > 0 else max(values)
+            print(f"{k:13s} median {text_of(k, np.median(values))} worst {text_of(k, worst)}")
+    print(f"{failures} of {n_surfaces} surfaces miss a limit or fail")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
