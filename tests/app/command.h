@@ -35,8 +35,9 @@ inline Outcome coxa_run(const std::string& arguments) {
   return run_shell(std::string(COXA_BINARY) + " " + arguments);
 }
 
-/// Runs the command with --json and sends it Ctrl-C as soon as it reports progress.
-inline Outcome coxa_interrupted(std::vector<std::string> arguments) {
+/// Runs the command with --json and sends it Ctrl-C as soon as its output holds `sign`.
+inline Outcome coxa_interrupted(std::vector<std::string> arguments,
+                                const std::string& sign = "\"progress\"") {
   arguments.insert(arguments.begin(), COXA_BINARY);
   arguments.push_back("--json");
   std::vector<char*> words;
@@ -58,7 +59,7 @@ inline Outcome coxa_interrupted(std::vector<std::string> arguments) {
   std::array<char, 4096> buffer;
   for (ssize_t n = 0; (n = read(ends[0], buffer.data(), buffer.size())) > 0;) {
     outcome.output.append(buffer.data(), static_cast<std::size_t>(n));
-    if (!sent && outcome.says("\"progress\"")) {
+    if (!sent && outcome.says(sign)) {
       kill(child, SIGINT);
       sent = true;
     }

@@ -34,17 +34,24 @@ TEST_F(Interrupted, SegmentLeavesNothing) {
                        "--contrast", "t1", "--landmarks", path("places.mrk.json")},
                       "segment");
 }
-TEST_F(Interrupted, RunKeepsNoHalfStage) {
-  if (!has_atlas()) GTEST_SKIP() << "no shipped atlas";
-  const auto atlas = io::read_atlas(pipeline::shipped_data("atlas/hip.coxa-atlas"));
-  io::write_landmarks(run_ / "places.mrk.json", atlas.landmarks);
-  io::write_bytes(run_ / "subject.toml", io::read_bytes(run_ / "subject.toml") +
-                                             "[landmarks]\npath = \"places.mrk.json\"\n");
-  const test::Outcome outcome =
-      test::coxa_interrupted({"run", (run_ / "subject.toml").string(), "--out", path("whole")});
-  EXPECT_EQ(outcome.exit_code, 130) << outcome.output;
-  EXPECT_FALSE(fs::exists(folder_ / "whole" / "segment"));
-  EXPECT_FALSE(fs::exists(folder_ / "whole" / "segment.partial"));
+TEST_F(Interrupted, RunKeepsFinishedStagesAndNoHalfOne) {
+  std::string subject =
+      "side = \"right\"\n[motion]\npattern = \"flexion\"\nframes = 2\n[surfaces]\n";
+  for (const char* name : {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"})
+    subject += std::string(name) + " = \"segment/" + name + ".vtp\"\n";
+  io::write_bytes(run_ / "subject.toml", subject);
+  std::vector<std::string> finished;
+  for (const std::string stage : {"segment", "mesh", "motion", "joint", "report"}) {
+    const test::Outcome outcome = test::coxa_interrupted(
+        {"run", (run_ / "subject.toml").string(), "--resume", "--out", path("whole")},
+        "\"stage\":\"" + stage + "\"");
+    EXPECT_EQ(outcome.exit_code, 130) << outcome.output;
+    EXPECT_FALSE(fs::exists(folder_ / "whole" / stage)) << outcome.output;
+    EXPECT_FALSE(fs::exists(folder_ / "whole" / (stage + ".partial")));
+    for (const std::string& done : finished)
+      EXPECT_TRUE(fs::exists(folder_ / "whole" / done / (done + ".json"))) << done;
+    finished.push_back(stage);
+  }
 }
 TEST_F(Interrupted, MeshLeavesNothing) {
   expect_nothing_left({"mesh", "--surface", (run_ / "segment/femoral_cartilage.vtp").string()},
