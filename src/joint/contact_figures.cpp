@@ -30,13 +30,9 @@ double pressure_percentile(const std::vector<collide::ContactSample>& samples, d
 
 double patch_peak(const std::vector<collide::ContactSample>& samples, double area) {
   const std::vector<collide::ContactSample> kept = pressed(samples);
-  double highest = 0.0;
-  for (const auto& sample : kept) highest = std::max(highest, sample.pressure);
   const double squared_radius = area / kPi;
   double peak = 0.0;
   for (const auto& centre : kept) {
-    // a mean of pressures far below the highest cannot be the greatest one
-    if (centre.pressure < 0.5 * highest) continue;
     double force = 0.0, covered = 0.0;
     for (const auto& sample : samples) {
       if ((sample.point - centre.point).squaredNorm() > squared_radius) continue;

@@ -50,6 +50,25 @@ class Relaxation {
   double share_ = 1.0;
 };
 
+/// Tells when rounds of contact search lead nowhere: for a while neither the residual nor the
+/// penetration has come clearly below what it was before.
+class Progress {
+ public:
+  bool stalled(double residual, double penetration) {
+    const bool better = residual < kClearly * residual_ || penetration < kClearly * penetration_;
+    residual_ = std::min(residual_, residual);
+    penetration_ = std::min(penetration_, penetration);
+    waiting_ = better ? 0 : waiting_ + 1;
+    return waiting_ > kPatience;
+  }
+
+ private:
+  static constexpr int kPatience = 6;
+  static constexpr double kClearly = 0.8;
+  double residual_ = kInfinity, penetration_ = kInfinity;
+  int waiting_ = 0;
+};
+
 /// How the gap of a constraint changes with the translation.
 Vec3 translation_slope(const collide::SurfaceContact& contact,
                        const collide::ContactConstraint& constraint, Index translation) {
@@ -234,6 +253,7 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
   std::string reason;
   tangent_age_ = 0;
   Relaxation relaxation;
+  Progress progress;
   // what was stiffened on the way to the state before is slow to change, and may not be needed now
   state.contact.clear_stiffening();
   for (int round = 0;; ++round) {
@@ -242,7 +262,8 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
     Settling settling = judge(state, force, limits);
     settling.iterations = iterations;
     if (settling.converged) return settling;
-    if (round == options_.max_contact_updates) {
+    const bool hopeless = progress.stalled(settling.residual, settling.penetration);
+    if (hopeless || round == options_.max_contact_updates) {
       settling.reason = join_text("no equilibrium after ", iterations, " Newton steps: residual ",
                                   settling.residual, " of the joint force (limit ", limits.residual,
                                   "), net force ", settling.imbalance, " (limit ", limits.imbalance,
