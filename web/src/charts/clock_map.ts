@@ -1,13 +1,20 @@
-import { css, mapColour } from "../colour/maps";
+import { mapColour, type MapName, type Rgb } from "../colour/maps";
 import { share, type Scale } from "../colour/scale";
 import type { Clock, Vec3 } from "../core/case";
 import { make } from "../core/dom";
 import { shortNumber } from "../core/numbers";
+import { fillTriangles } from "./raster";
 import { flattened, sectorMeans, sectorOf } from "./clock";
 
 const kArticular = 2; // FacetTag::articular_side
-const kLevels = 64; // of colour
+const kLevels = 256; // of colour
 const kShown = 1.25; // right angles from the pole at the edge of the picture
+
+/** Colours of the map from end to end, then that of no value; as pixels. */
+function colourTable(map: MapName): Uint32Array {
+  const pixel = ([r, g, b]: Rgb): number => (0xff000000 | (b << 16) | (g << 8) | r) >>> 0;
+  return Uint32Array.from({ length: kLevels + 2 }, (_, i) => pixel(mapColour(map, i > kLevels ? NaN : i / kLevels)));
+}
 
 /** The acetabular joint surface flattened on a clock face, coloured by a field, with means by hour below. */
 export class ClockMap {
@@ -70,10 +77,10 @@ export class ClockMap {
     this.canvas.style.width = this.canvas.style.height = `${size}px`;
     const context = this.canvas.getContext("2d");
     if (!context) return;
-    context.scale(ratio, ratio);
     const middle = size / 2;
     const unit = (middle - 16) / kShown;
-    if (this.shown) this.drawTriangles(context, middle, unit, this.shown);
+    if (this.shown) this.drawTriangles(context, this.canvas.width, ratio * unit, this.shown);
+    context.scale(ratio, ratio);
     const style = getComputedStyle(this.element);
     context.strokeStyle = style.getPropertyValue("--line");
     context.fillStyle = style.getPropertyValue("--ink");
@@ -92,29 +99,16 @@ export class ClockMap {
     }
   }
 
-  private drawTriangles(context: CanvasRenderingContext2D, middle: number, unit: number, shown: { values: Float32Array; scale: Scale }): void {
-    const x = (v: number): number => middle + unit * (this.flat[2 * v] ?? 0);
-    const y = (v: number): number => middle - unit * (this.flat[2 * v + 1] ?? 0);
-    // one path a colour: thousands of single fills would cost more than a frame may
-    const paths = new Map<number, Path2D>();
-    for (let t = 0; t + 2 < this.corners.length; t += 3) {
-      const a = this.corners[t] ?? 0;
-      const b = this.corners[t + 1] ?? 0;
-      const c = this.corners[t + 2] ?? 0;
-      const mean = ((shown.values[a] ?? NaN) + (shown.values[b] ?? NaN) + (shown.values[c] ?? NaN)) / 3;
-      const at = share(shown.scale, mean);
-      const level = Number.isNaN(at) ? -1 : Math.round(Math.min(1, Math.max(0, at)) * kLevels);
-      let path = paths.get(level);
-      if (!path) paths.set(level, (path = new Path2D()));
-      path.moveTo(x(a), y(a));
-      path.lineTo(x(b), y(b));
-      path.lineTo(x(c), y(c));
-      path.closePath();
+  private drawTriangles(context: CanvasRenderingContext2D, size: number, unit: number, shown: { values: Float32Array; scale: Scale }): void {
+    const xy = new Float32Array(this.flat.length);
+    const shares = new Float32Array(shown.values.length);
+    for (let v = 0; v < shares.length; ++v) {
+      xy[2 * v] = size / 2 + unit * (this.flat[2 * v] ?? 0);
+      xy[2 * v + 1] = size / 2 - unit * (this.flat[2 * v + 1] ?? 0);
+      shares[v] = share(shown.scale, shown.values[v] ?? NaN);
     }
-    for (const [level, path] of paths) {
-      context.fillStyle = context.strokeStyle = css(mapColour(shown.scale.map, level < 0 ? NaN : level / kLevels));
-      context.fill(path);
-      context.stroke(path); // closes the hairlines between neighbours
-    }
+    const image = context.createImageData(size, size);
+    fillTriangles(new Uint32Array(image.data.buffer), size, xy, this.corners, shares, colourTable(shown.scale.map));
+    context.putImageData(image, 0, 0);
   }
 }

@@ -190,7 +190,7 @@ export class Viewer {
     if (!fence) return;
     const drawn = gl.clientWaitSync(fence, 0, 0);
     if (drawn === gl.TIMEOUT_EXPIRED) {
-      setTimeout(() => this.awaitPicture(gl, start), 4);
+      setTimeout(() => this.awaitPicture(gl, start), 16);
       return;
     }
     gl.deleteSync(fence);
