@@ -123,6 +123,18 @@ Preparation prepared(const shape::StructureModel& model) {
   return preparation;
 }
 
+/// Landmarks placed on slices are as exact as these are thin: borders are looked for at least this
+/// many voxels away.
+constexpr double kVoxelsSearched = 3.0;
+
+/// mm, for the image with the thinnest slices.
+double range_of_search(const std::vector<PreparedImage>& images, const SegmentOptions& options) {
+  double thinnest = kInfinity;
+  for (const PreparedImage& image : images)
+    thinnest = std::min(thinnest, image.volume.spacing.maxCoeff());
+  return std::max(options.search_range, kVoxelsSearched * thinnest);
+}
+
 /// A structure's confidence below which the caller is warned; a good fit has 0.6 to 0.9.
 constexpr double kLowConfidence = 0.4;
 
@@ -153,7 +165,7 @@ class Hip {
       bones.push_back(placed_body(*models[b], placed[b]));
       bones.back().prepared = &preparations_[numbers[b]];
     }
-    const auto resolutions = bone_resolutions(options_.search_range);
+    const auto resolutions = bone_resolutions(range_of_search(images_, options_));
     choose_contrasts(bones, resolutions.front());
     update_through(bones, resolutions, images_, std::vector<Obstacles>(bones.size()),
                    std::vector<TriMesh>(bones.size()), options_, monitor);
