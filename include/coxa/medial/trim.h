@@ -15,7 +15,7 @@ struct TrimOptions {
   double thickness = 0.3;    ///< mm, > 0: a thinner zone goes …
   double width = 0.4;        ///< mm, >= 0: … and a tongue narrower than twice this …
   double margin = 0.8;       ///< mm, > 0: … but for a seam of this width, which knife edges keep
-  double least_depth = 0.8;  ///< mm, >= 0: zones that reach less far beyond that seam stay
+  double least_depth = 1.5;  ///< mm, >= 0: zones that reach less far beyond that seam stay
 };
 
 /// A sheet with its thin border zones cut away.
