@@ -137,6 +137,8 @@ double range_of_search(const std::vector<PreparedImage>& images, const SegmentOp
 
 /// A structure's confidence below which the caller is warned; a good fit has 0.6 to 0.9.
 constexpr double kLowConfidence = 0.4;
+/// A quality below which the whole hip is doubtful; adults in fair images have 0.55 to 0.7.
+constexpr double kDoubtfulQuality = 0.5;
 
 /// Everything about one hip, as a right hip.
 class Hip {
@@ -320,6 +322,11 @@ SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& optio
     }
   }
   result.quality = n_bones > 0.0 ? bone_confidence / n_bones : 1.0;
+  if (result.quality < kDoubtfulQuality) {
+    result.warnings.push_back(join_text(
+        "low confidence: quality ", result.quality, ", below ", kDoubtfulQuality,
+        "; the hip may lie outside the atlas, which is made of adults without prostheses"));
+  }
   for (const PreparedImage& image : hip.images()) result.contrasts.push_back(image.contrast);
   if (result.quality < options.minimum_quality) {
     fail(ErrorCode::below_quality, "the hip was not found: quality ", result.quality,
