@@ -133,10 +133,8 @@ void add_summary(view::ReportWriter& page, const Sources& s) {
 }
 
 std::string pose_title(const FrameRow& row) {
-  char text[96];
-  std::snprintf(text, sizeof text, "%.0f° flexion, %.0f° internal rotation",
-                row.number("flexion_deg"), row.number("internal_rotation_deg"));
-  return text;
+  return join_text(std::lround(row.number("flexion_deg")), "° flexion, ",
+                   std::lround(row.number("internal_rotation_deg")), "° internal rotation");
 }
 
 /// Up to six converged frames spread over the movement.
