@@ -1,6 +1,7 @@
 #include <coxa/io/landmarks.h>
 
 #include <coxa/core/error.h>
+#include <coxa/io/csv.h>
 #include <coxa/io/files.h>
 
 #include <nlohmann/json.hpp>
@@ -52,25 +53,6 @@ Landmarks parse_markups(const std::string& bytes, const std::string& source) {
   return landmarks;
 }
 
-/// Cells of one line; a cell may be quoted, with doubled quotes inside.
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
-      cells.back() += line[++i];
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      cells.emplace_back();
-    } else if (c != '\r') {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
-
 double number(const std::string& cell, const std::string& source, int line) {
   std::istringstream text(cell);
   double value = 0.0;
@@ -83,7 +65,7 @@ Landmarks parse_csv(const std::string& bytes, const std::string& source) {
   std::istringstream stream(bytes);
   std::string line;
   std::getline(stream, line);
-  const std::vector<std::string> header = cells_of(line);
+  const std::vector<std::string> header = csv_cells(line);
   const auto column = [&](const char* name) {
     return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
   };
@@ -93,7 +75,7 @@ Landmarks parse_csv(const std::string& bytes, const std::string& source) {
     fail(ErrorCode::bad_file, source, ":1: the header needs the columns name, x, y, z");
   Landmarks landmarks;
   for (int n = 2; std::getline(stream, line); ++n) {
-    const std::vector<std::string> cells = cells_of(line);
+    const std::vector<std::string> cells = csv_cells(line);
     if (cells.size() == 1 && cells[0].empty()) continue;
     if (last >= cells.size())
       fail(ErrorCode::bad_file, source, ":", n, ": a row with ", cells.size(), " cells");

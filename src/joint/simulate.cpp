@@ -196,6 +196,18 @@ JointResult Simulation::run() {
 
 }  // namespace
 
+const char* name_of(FrameStatus status) {
+  switch (status) {
+    case FrameStatus::converged:
+      return "converged";
+    case FrameStatus::failed:
+      return "failed";
+    case FrameStatus::beyond_bony_limit:
+      return "beyond_bony_limit";
+  }
+  return "";
+}
+
 Index JointResult::n_converged() const {
   return static_cast<Index>(std::count_if(frames.begin(), frames.end(), [](const FrameResult& f) {
     return f.status == FrameStatus::converged;

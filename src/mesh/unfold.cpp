@@ -46,7 +46,7 @@ bool update_unfolded(TriMesh& mesh) {
         for (int c = 0; c < 3; ++c) marked[static_cast<std::size_t>(mesh.triangles(t, c))] = true;
       }
     }
-    // stubborn places get more room
+    // a place that does not come free in six rounds is evened together with one more ring
     for (int ring = 0; ring <= round / 6; ++ring) marked = grown(marked, neighbours);
     for (int pass = 0; pass < kPasses; ++pass) update_evened(mesh, marked, neighbours);
   }

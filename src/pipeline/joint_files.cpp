@@ -53,18 +53,6 @@ void write_frame(const fs::path& folder, const joint::JointModel& model,
   io::write_tets(folder / numbered("femoral", frame.frame), mesh, femoral);
 }
 
-std::string status_name(joint::FrameStatus status) {
-  switch (status) {
-    case joint::FrameStatus::converged:
-      return "converged";
-    case joint::FrameStatus::failed:
-      return "failed";
-    case joint::FrameStatus::beyond_bony_limit:
-      return "beyond_bony_limit";
-  }
-  return "";
-}
-
 /// A comma and the number; an empty cell where it is not one.
 std::string cell(double value) {
   if (!(value == value)) return ",";
@@ -135,7 +123,7 @@ std::string summary_csv(const motion::HipMotion& motion, const joint::JointResul
   std::string text = header();
   for (const joint::FrameResult& f : result.frames) {
     text += join_text(f.frame) + cell(motion.time[static_cast<std::size_t>(f.frame)]) + "," +
-            status_name(f.status) + cell(degrees(f.angles.flexion)) +
+            joint::name_of(f.status) + cell(degrees(f.angles.flexion)) +
             cell(degrees(f.angles.adduction)) + cell(degrees(f.angles.internal_rotation));
     const bool converged = f.status == joint::FrameStatus::converged;
     for (int i = 0; i < 3; ++i) text += cell(converged ? f.translation[i] : kNaN);

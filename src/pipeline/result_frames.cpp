@@ -1,6 +1,7 @@
 #include "result_frames.h"
 
 #include <coxa/core/error.h>
+#include <coxa/io/csv.h>
 #include <coxa/io/files.h>
 #include <coxa/io/tets.h>
 
@@ -10,24 +11,6 @@
 namespace coxa::pipeline {
 namespace fs = std::filesystem;
 namespace {
-
-/// Cells of a line; a quoted one may hold commas and doubled quotes.
-std::vector<std::string> split_csv(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
-      cells.back() += line[++i];
-    } else if (line[i] == '"') {
-      quoted = !quoted;
-    } else if (line[i] == ',' && !quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back() += line[i];
-    }
-  }
-  return cells;
-}
 
 /// sqrt(2/3 dev E : dev E) of a row of nine components.
 double effective(const Eigen::RowVectorXd& nine) {
@@ -79,10 +62,10 @@ ResultFrames read_result_frames(const fs::path& joint_folder) {
   std::istringstream lines(io::read_bytes(path));
   std::string line;
   std::getline(lines, line);
-  const std::vector<std::string> names = split_csv(line);
+  const std::vector<std::string> names = io::csv_cells(line);
   ResultFrames frames{joint_folder, {}};
   while (std::getline(lines, line)) {
-    const std::vector<std::string> cells = split_csv(line);
+    const std::vector<std::string> cells = io::csv_cells(line);
     if (cells.size() != names.size()) {
       fail(ErrorCode::bad_file, path.string(), ": a line has ", cells.size(), " cells, the header ",
            names.size());

@@ -2,9 +2,8 @@
 
 #include <coxa/core/parallel.h>
 #include <coxa/geom/triangle_tree.h>
+#include <coxa/segment/seat.h>
 #include <coxa/shape/shape_modes.h>
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 
@@ -18,27 +17,6 @@ constexpr double kFarthest = 2.5;  // standard deviations
 /// What a mode at one standard deviation must bring in mean correlation.
 constexpr double kPrior = 0.002;
 
-struct Place {
-  Index triangle = 0;
-  Vec3 barycentric;
-};
-
-Mat3 axes_of(const TriMesh& mesh, Index t) {
-  const Vec3 a = mesh.points.row(mesh.triangles(t, 0)), b = mesh.points.row(mesh.triangles(t, 1)),
-             c = mesh.points.row(mesh.triangles(t, 2));
-  const Vec3 normal = (b - a).cross(c - a).normalized(), along = (b - a).normalized();
-  Mat3 axes;
-  axes << along, normal.cross(along), normal;
-  return axes;
-}
-
-Vec3 point_at(const TriMesh& mesh, const Place& place) {
-  Vec3 p = Vec3::Zero();
-  for (int c = 0; c < 3; ++c)
-    p += place.barycentric[c] * mesh.points.row(mesh.triangles(place.triangle, c)).transpose();
-  return p;
-}
-
 }  // namespace
 
 Points laid_on(const Points& shape, Index n_bone_side, const TriMesh& mean, const TriMesh& now,
@@ -47,12 +25,12 @@ Points laid_on(const Points& shape, Index n_bone_side, const TriMesh& mean, cons
   Points laid(shape.rows(), 3);
   parallel_for(n_bone_side, [&](Index v) {
     const NearestPoint near = tree.nearest(shape.row(v).transpose());
-    const Place place{near.triangle, near.barycentric};
-    const Mat3 to = axes_of(now, near.triangle), from = axes_of(mean, near.triangle);
-    const Vec3 seat = point_at(now, place) + gap * to.col(2);
+    const TriangleFrame from = triangle_frame(mean, near.triangle, near.barycentric);
+    const TriangleFrame to = triangle_frame(now, near.triangle, near.barycentric);
+    const Vec3 seat = to.origin + gap * to.axes.col(2);
     const Vec3 offset = (shape.row(v + n_bone_side) - shape.row(v)).transpose();
     laid.row(v) = seat.transpose();
-    laid.row(v + n_bone_side) = (seat + to * (from.transpose() * offset)).transpose();
+    laid.row(v + n_bone_side) = (seat + to.axes * (from.axes.transpose() * offset)).transpose();
   });
   return laid;
 }

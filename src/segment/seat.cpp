@@ -18,25 +18,19 @@ constexpr double kSeatedShare = 0.2;
 /// A host has many times the volume of the layer on it; two touching layers have about the same.
 constexpr double kVolumeRatio = 3.0;
 
-struct Frame {
-  Vec3 origin;
-  Mat3 axes;
-};
+}  // namespace
 
-/// Frame of a triangle at barycentric coordinates: first edge, in-plane, normal.
-Frame triangle_frame(const TriMesh& mesh, Index triangle, const Vec3& barycentric) {
+TriangleFrame triangle_frame(const TriMesh& mesh, Index triangle, const Vec3& barycentric) {
   const Vec3 a = mesh.points.row(mesh.triangles(triangle, 0)).transpose();
   const Vec3 b = mesh.points.row(mesh.triangles(triangle, 1)).transpose();
   const Vec3 c = mesh.points.row(mesh.triangles(triangle, 2)).transpose();
-  Frame frame;
+  TriangleFrame frame;
   frame.origin = barycentric[0] * a + barycentric[1] * b + barycentric[2] * c;
   const Vec3 normal = (b - a).cross(c - a).normalized();
   const Vec3 along = (b - a).normalized();
   frame.axes << along, normal.cross(along), normal;
   return frame;
 }
-
-}  // namespace
 
 VecX seated_vertices(const shape::StructureModel& layer, const TriMesh& host_mean) {
   const SimplexMesh& mesh = layer.hierarchy.levels.back();
@@ -46,7 +40,7 @@ VecX seated_vertices(const shape::StructureModel& layer, const TriMesh& host_mea
   parallel_for(mesh.n_vertices(), [&](Index v) {
     const auto near = tree.nearest_within(mesh.points.row(v).transpose(), kSeatDistance);
     if (!near) return;
-    const Frame frame = triangle_frame(host_mean, near->triangle, near->barycentric);
+    const TriangleFrame frame = triangle_frame(host_mean, near->triangle, near->barycentric);
     if (frame.axes.col(2).dot(normals.row(v).transpose()) < -0.3) seated[v] = 1.0;
   });
   return seated;
@@ -82,8 +76,8 @@ Points carried_points(const Points& points, const TriMesh& before, const TriMesh
   parallel_for(points.rows(), [&](Index v) {
     const Vec3 p = points.row(v).transpose();
     const NearestPoint near = tree.nearest(p);
-    const Frame from = triangle_frame(before, near.triangle, near.barycentric);
-    const Frame to = triangle_frame(now, near.triangle, near.barycentric);
+    const TriangleFrame from = triangle_frame(before, near.triangle, near.barycentric);
+    const TriangleFrame to = triangle_frame(now, near.triangle, near.barycentric);
     carried.row(v) =
         (to.origin + to.axes * (from.axes.transpose() * (p - from.origin))).transpose();
   });

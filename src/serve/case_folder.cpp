@@ -1,5 +1,7 @@
 #include "case_folder.h"
 
+#include "pose_json.h"
+
 #include <coxa/core/error.h>
 #include <coxa/geom/fits.h>
 #include <coxa/io/config.h>
@@ -22,16 +24,6 @@ constexpr const char* kStructures[] = {"hip_bone", "femur", "acetabular_cartilag
                                        "femoral_cartilage"};
 
 Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
-/// Rows of the matrix, then the translation: 12 numbers.
-Json json_of(const RigidTransform& X) {
-  Json numbers = Json::array();
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) numbers.push_back(X.R(r, c));
-  }
-  for (int r = 0; r < 3; ++r) numbers.push_back(X.p[r]);
-  return numbers;
-}
 
 Json read_json(const fs::path& path) {
   const Json json = Json::parse(io::read_bytes(path), nullptr, false);

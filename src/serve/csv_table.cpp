@@ -1,6 +1,7 @@
 #include "csv_table.h"
 
 #include <coxa/core/error.h>
+#include <coxa/io/csv.h>
 #include <coxa/io/files.h>
 
 #include <charconv>
@@ -9,24 +10,6 @@
 namespace coxa::serve {
 namespace {
 using Json = nlohmann::json;
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
-      cells.back() += line[++i];
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      cells.emplace_back();
-    } else if (c != '\r') {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
 
 Json value_of(const std::string& cell) {
   if (cell.empty()) return nullptr;
@@ -44,7 +27,7 @@ Json csv_table(const std::filesystem::path& path) {
   Json rows = Json::array();
   while (std::getline(lines, line)) {
     if (line.empty() || line.front() == '#') continue;
-    std::vector<std::string> cells = cells_of(line);
+    std::vector<std::string> cells = io::csv_cells(line);
     if (columns.empty()) {
       columns = std::move(cells);
       continue;

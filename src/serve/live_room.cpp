@@ -1,5 +1,7 @@
 #include "live_room.h"
 
+#include "pose_json.h"
+
 #include <coxa/core/error.h>
 #include <coxa/serve/bundle.h>
 
@@ -17,26 +19,11 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-const char* status_name(joint::FrameStatus status) {
-  return status == joint::FrameStatus::converged ? "converged"
-         : status == joint::FrameStatus::failed  ? "failed"
-                                                 : "beyond_bony_limit";
-}
-
-Json json_of(const RigidTransform& X) {
-  Json numbers = Json::array();
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) numbers.push_back(X.R(r, c));
-  }
-  for (int r = 0; r < 3; ++r) numbers.push_back(X.p[r]);
-  return numbers;
-}
-
 Json number_or_null(double value) { return value == value ? Json(value) : Json(nullptr); }
 
 Json meta_of(const joint::FrameResult& frame, const motion::HipAngles& angles) {
   const joint::ContactFigures& contact = frame.contact;
-  Json meta{{"status", status_name(frame.status)},
+  Json meta{{"status", joint::name_of(frame.status)},
             {"reason", frame.reason},
             {"femur_pose", json_of(frame.X_II)},
             {"flexion_deg", degrees(angles.flexion)},

@@ -7,12 +7,6 @@
 
 namespace coxa::test {
 
-/// The same surface seen from its other side.
-inline TriMesh turned_over(TriMesh mesh) {
-  mesh.triangles.col(1).swap(mesh.triangles.col(2));
-  return mesh;
-}
-
 /// Particle positions (3n values) of the meshes' vertices, one mesh after the other.
 inline VecX stacked(const TriMesh& a, const TriMesh& b = {}) {
   VecX x(3 * (a.n_vertices() + b.n_vertices()));

@@ -11,18 +11,10 @@
 
 namespace coxa {
 
-TriMesh together(TriMesh a, const TriMesh& b) {
-  const Index n = a.n_vertices(), m = a.n_triangles();
-  a.points.conservativeResize(n + b.n_vertices(), 3);
-  a.points.bottomRows(b.n_vertices()) = b.points;
-  a.triangles.conservativeResize(m + b.n_triangles(), 3);
-  a.triangles.bottomRows(b.n_triangles()) = b.triangles.array() + n;
-  return a;
-}
-
 TEST(Rebuild, JoinsOverlappingBodiesIntoOne) {
   // two balls of 5 mm, 6 mm apart: the lens counted twice is known
-  const TriMesh two = together(test::icosphere(3, 5.0), test::icosphere(3, 5.0, Vec3(6, 0, 0)));
+  const TriMesh two =
+      test::together(test::icosphere(3, 5.0), test::icosphere(3, 5.0, Vec3(6, 0, 0)));
   EXPECT_THROW(repair(two), Error);
   const Rebuilt rebuilt = rebuild(two);
   EXPECT_TRUE(validate(rebuilt.mesh).valid());
@@ -33,7 +25,7 @@ TEST(Rebuild, JoinsOverlappingBodiesIntoOne) {
   EXPECT_LT(rebuilt.largest_move, 0.4);
 }
 TEST(Rebuild, ClosesHolesAndIgnoresTurnedTrianglesAndInnerWalls) {
-  TriMesh mesh = together(test::icosphere(3, 5.0), test::plate(0.0, 3.0, 4));
+  TriMesh mesh = test::together(test::icosphere(3, 5.0), test::plate(0.0, 3.0, 4));
   mesh.triangles.row(17).reverseInPlace();
   mesh.triangles.row(40) = mesh.triangles.row(41);
   const Rebuilt rebuilt = rebuild(mesh);

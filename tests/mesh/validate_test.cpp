@@ -7,18 +7,6 @@
 
 namespace coxa {
 
-TriMesh joined(TriMesh a, const TriMesh& b) {
-  const Index n = a.n_vertices(), m = a.n_triangles();
-  a.points.conservativeResize(n + b.n_vertices(), 3);
-  a.points.bottomRows(b.n_vertices()) = b.points;
-  a.triangles.conservativeResize(m + b.n_triangles(), 3);
-  a.triangles.bottomRows(b.n_triangles()) = b.triangles.array() + n;
-  return a;
-}
-TriMesh inside_out(TriMesh mesh) {
-  mesh.triangles.col(1).swap(mesh.triangles.col(2));
-  return mesh;
-}
 // the kinds found, alone
 std::vector<FaultKind> kinds(const TriMesh& mesh) {
   std::vector<FaultKind> found;
@@ -52,10 +40,11 @@ TEST(Validate, NamesEveryKindOfFaultAlone) {
   mesh = test::box();
   mesh.triangles.row(7).reverseInPlace();
   EXPECT_EQ(kinds(mesh), Kinds{FaultKind::mixed_orientation});
-  EXPECT_EQ(kinds(inside_out(test::torus())), Kinds{FaultKind::inward_orientation});
-  EXPECT_EQ(kinds(joined(test::icosphere(2),
-                         test::moved(test::icosphere(2), {Mat3::Identity(), Vec3(7, 0, 0)}))),
-            Kinds{FaultKind::self_intersection});
+  EXPECT_EQ(kinds(test::turned_over(test::torus())), Kinds{FaultKind::inward_orientation});
+  EXPECT_EQ(
+      kinds(test::together(test::icosphere(2),
+                           test::moved(test::icosphere(2), {Mat3::Identity(), Vec3(7, 0, 0)}))),
+      Kinds{FaultKind::self_intersection});
 }
 TEST(Validate, CountsPlacesAndTellsWhereTheFirstIs) {
   TriMesh mesh = test::plate(2.0, 1.0, 2);
@@ -77,7 +66,7 @@ TEST(Validate, FindsDuplicatesFlatTrianglesAndFins) {
   EXPECT_TRUE(validate(mesh).has(FaultKind::degenerate_triangle));
 }
 TEST(Validate, SeesSheetsThatTouchInAVertex) {
-  TriMesh mesh = joined(test::box(), test::box(Vec3(1, 1, 1), Vec3(2, 2, 2)));
+  TriMesh mesh = test::together(test::box(), test::box(Vec3(1, 1, 1), Vec3(2, 2, 2)));
   mesh.triangles = mesh.triangles.unaryExpr([](Index v) { return v == 8 ? 7 : v; }).eval();
   EXPECT_TRUE(validate(mesh).has(FaultKind::non_manifold_vertex));
 }
@@ -90,8 +79,9 @@ TEST(Validate, SliversAreWarningsAboveTheRatioAskedFor) {
 }
 TEST(Validate, CavitiesAreInwardOnPurpose) {
   EXPECT_TRUE(
-      validate(joined(test::icosphere(2, 10.0), inside_out(test::icosphere(2, 5.0)))).valid());
-  EXPECT_TRUE(validate(joined(test::icosphere(2, 10.0), test::icosphere(2, 5.0)))
+      validate(test::together(test::icosphere(2, 10.0), test::turned_over(test::icosphere(2, 5.0))))
+          .valid());
+  EXPECT_TRUE(validate(test::together(test::icosphere(2, 10.0), test::icosphere(2, 5.0)))
                   .has(FaultKind::inward_orientation));
 }
 TEST(SelfIntersections, FindFoldsAndNeighboursThatCross) {

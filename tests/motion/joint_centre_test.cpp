@@ -9,40 +9,10 @@
 
 #include <cmath>
 
+#include "support/shapes.h"
+
 namespace coxa::motion {
 namespace {
-
-// closed surface of revolution about the x axis through `profile` (x, radius), outward
-TriMesh revolved(const std::vector<Vec2>& profile, Index around) {
-  const auto rings = static_cast<Index>(profile.size());
-  TriMesh mesh;
-  mesh.points.resize(rings * around + 2, 3);
-  for (Index r = 0; r < rings; ++r) {
-    for (Index k = 0; k < around; ++k) {
-      const double a = 2 * kPi * k / around;
-      const Vec2& p = profile[static_cast<std::size_t>(r)];
-      mesh.points.row(r * around + k) << p.x(), p.y() * std::cos(a), p.y() * std::sin(a);
-    }
-  }
-  const Index first = rings * around, last = first + 1;
-  mesh.points.row(first) << profile.front().x(), 0, 0;
-  mesh.points.row(last) << profile.back().x(), 0, 0;
-  std::vector<Eigen::RowVector3i> triangles;
-  for (Index k = 0; k < around; ++k) {
-    const Index next = (k + 1) % around;
-    triangles.emplace_back(first, next, k);
-    triangles.emplace_back(last, (rings - 1) * around + k, (rings - 1) * around + next);
-    for (Index r = 0; r + 1 < rings; ++r) {
-      const Index a = r * around + k, b = r * around + next;
-      triangles.emplace_back(a, b, b + around);
-      triangles.emplace_back(a, b + around, a + around);
-    }
-  }
-  mesh.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    mesh.triangles.row(static_cast<Eigen::Index>(t)) = triangles[t];
-  return mesh;
-}
 
 // a head of radius 24 about the origin on a neck that widens to a trochanter, along +x
 TriMesh head_on_neck() {
@@ -50,7 +20,7 @@ TriMesh head_on_neck() {
   for (double a = 0.02; a < 2.4; a += 0.04)
     profile.emplace_back(-24 * std::cos(a), 24 * std::sin(a));
   for (double x = 20; x < 60; x += 1.5) profile.emplace_back(x, 15.0 + 0.012 * (x - 20) * (x - 20));
-  return revolved(profile, 90);
+  return test::revolved(profile, 90);
 }
 
 // a socket: part of a sphere shell from radius 25 to 27 about c, opening along +x
@@ -60,7 +30,7 @@ TriMesh socket_shell(const Vec3& c) {
     profile.emplace_back(-27 * std::cos(a), 27 * std::sin(a));
   for (double a = 1.33; a > 0.03; a -= 0.04)
     profile.emplace_back(-25 * std::cos(a), 25 * std::sin(a));
-  TriMesh mesh = revolved(profile, 90);
+  TriMesh mesh = test::revolved(profile, 90);
   mesh.points.rowwise() += c.transpose();
   return mesh;
 }
@@ -128,11 +98,11 @@ TEST(JointCentre, ByCongruencyIsTheCentreOfARoundHead) {
   std::vector<Vec2> profile;
   for (double a = 0.02; a < kPi - 0.01; a += 0.05)
     profile.emplace_back(-24 * std::cos(a), 24 * std::sin(a));
-  const TriMesh head = revolved(profile, 90);
+  const TriMesh head = test::revolved(profile, 90);
   std::vector<Vec2> cup;
   for (double a = 0.05; a < 1.4; a += 0.05) cup.emplace_back(-25 * std::cos(a), 25 * std::sin(a));
   const auto centre =
-      congruency_centre(head, open_at_the_end(revolved(cup, 60)), Vec3(0.6, -0.5, 0.4), 150);
+      congruency_centre(head, open_at_the_end(test::revolved(cup, 60)), Vec3(0.6, -0.5, 0.4), 150);
   EXPECT_LE(centre.centre.norm(), 0.05);
   EXPECT_LE(centre.rms, 0.05);
 }

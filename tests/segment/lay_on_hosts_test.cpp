@@ -8,23 +8,9 @@
 
 namespace coxa::segment {
 
-TriMesh turned_over(TriMesh mesh) {
-  mesh.triangles.col(1).swap(mesh.triangles.col(2));
-  return mesh;
-}
-
-TriMesh together(const TriMesh& a, const TriMesh& b) {
-  TriMesh both = a;
-  both.points.conservativeResize(a.n_vertices() + b.n_vertices(), 3);
-  both.points.bottomRows(b.n_vertices()) = b.points;
-  both.triangles.conservativeResize(a.n_triangles() + b.n_triangles(), 3);
-  both.triangles.bottomRows(b.n_triangles()) = b.triangles.array() + a.n_vertices();
-  return both;
-}
-
 /// A spherical shell, outward: its first half of vertices on the inner sphere.
 TriMesh shell(double inner, double outer) {
-  return together(turned_over(test::icosphere(4, inner)), test::icosphere(4, outer));
+  return test::together(test::turned_over(test::icosphere(4, inner)), test::icosphere(4, outer));
 }
 double mean_radius(const Points& points) { return points.rowwise().norm().mean(); }
 
@@ -36,7 +22,7 @@ class LayOnHosts : public ::testing::Test {
   }
   Index half() const { return inner_.n_vertices() / 2; }
   const TriMesh ball_ = test::icosphere(4, 20.0);
-  const TriMesh cup_ = turned_over(test::icosphere(4, 23.0));
+  const TriMesh cup_ = test::turned_over(test::icosphere(4, 23.0));
   TriMesh inner_ = shell(19.8, 22.0), outer_ = shell(21.5, 23.2);
 };
 

@@ -50,6 +50,54 @@ TriMesh wrapped_grid(Index u, Index v, const Position& position) {
   return mesh;
 }
 
+/// Closed surface of revolution about the x axis through `profile` (x, radius), outward.
+inline TriMesh revolved(const std::vector<Vec2>& profile, Index around) {
+  const auto rings = static_cast<Index>(profile.size());
+  TriMesh mesh;
+  mesh.points.resize(rings * around + 2, 3);
+  for (Index r = 0; r < rings; ++r) {
+    const Vec2& p = profile[static_cast<std::size_t>(r)];
+    for (Index k = 0; k < around; ++k) {
+      const double turn = 2.0 * kPi * k / around;
+      mesh.points.row(r * around + k) << p.x(), p.y() * std::cos(turn), p.y() * std::sin(turn);
+    }
+  }
+  const Index first = rings * around, last = first + 1;
+  mesh.points.row(first) << profile.front().x(), 0, 0;
+  mesh.points.row(last) << profile.back().x(), 0, 0;
+  std::vector<Eigen::RowVector3i> triangles;
+  for (Index k = 0; k < around; ++k) {
+    const Index next = (k + 1) % around;
+    triangles.emplace_back(first, next, k);
+    triangles.emplace_back(last, (rings - 1) * around + k, (rings - 1) * around + next);
+    for (Index r = 0; r + 1 < rings; ++r) {
+      const Index a = r * around + k, b = r * around + next;
+      triangles.emplace_back(a, b, b + around);
+      triangles.emplace_back(a, b + around, a + around);
+    }
+  }
+  mesh.triangles.resize(static_cast<Index>(triangles.size()), 3);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    mesh.triangles.row(static_cast<Index>(t)) = triangles[t];
+  return mesh;
+}
+
+/// Both surfaces as one mesh, the vertices and triangles of `a` first.
+inline TriMesh together(TriMesh a, const TriMesh& b) {
+  const Index n = a.n_vertices(), m = a.n_triangles();
+  a.points.conservativeResize(n + b.n_vertices(), 3);
+  a.points.bottomRows(b.n_vertices()) = b.points;
+  a.triangles.conservativeResize(m + b.n_triangles(), 3);
+  a.triangles.bottomRows(b.n_triangles()) = b.triangles.array() + n;
+  return a;
+}
+
+/// The surface inside out.
+inline TriMesh turned_over(TriMesh mesh) {
+  mesh.triangles.col(1).swap(mesh.triangles.col(2));
+  return mesh;
+}
+
 /// Torus about z: genus 1.
 inline TriMesh torus(double major = 10.0, double minor = 3.0, Index u = 48, Index v = 24) {
   return wrapped_grid(u, v, [=](double s, double t) {

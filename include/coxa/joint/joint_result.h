@@ -19,6 +19,9 @@ enum class FrameStatus {
   beyond_bony_limit,  ///< the bones would overlap; holds no stress
 };
 
+/// "converged", "failed" or "beyond_bony_limit".
+const char* name_of(FrameStatus status);
+
 /// The six regions of the socket, 60 degrees each on the clock face.
 inline constexpr std::array<const char*, 6> kRegionNames = {"superior",        "anterosuperior",
                                                             "anteroinferior",  "inferior",

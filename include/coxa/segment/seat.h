@@ -17,6 +17,15 @@ std::vector<std::optional<std::size_t>> find_hosts(
 /// else 0.
 VecX seated_vertices(const shape::StructureModel& layer, const TriMesh& host_mean);
 
+/// A place on a surface with axes that turn along with it.
+struct TriangleFrame {
+  Vec3 origin = Vec3::Zero();
+  Mat3 axes = Mat3::Identity();  ///< columns: first edge, in-plane, normal
+};
+
+/// Frame of a triangle at barycentric coordinates.
+TriangleFrame triangle_frame(const TriMesh& mesh, Index triangle, const Vec3& barycentric);
+
 /// Points near a surface carried along when that surface changes: each keeps its place relative to
 /// the nearest triangle's frame.
 /// @param now  the surface after the change, same triangles as `before`
