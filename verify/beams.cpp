@@ -25,10 +25,7 @@ struct Deflection {
 class Cantilever {
  public:
   Cantilever()
-      : mesh_(quadratic_mesh({60, 1, 1,
-                              [](Index i, Index j, Index k) {
-                                return Vec3(kLength * i / 60.0, kSide * j, kSide * k);
-                              }})),
+      : mesh_(rod_mesh()),
         elastic_(mesh_, fem::make_st_venant_kirchhoff(fem::lame_from(kModulus, 0.0))),
         particles_{fem::test::stacked(mesh_.points), VecX::Zero(mesh_.points.size()),
                    VecX::Ones(mesh_.n_vertices())} {
@@ -77,12 +74,21 @@ void add_rows(Rows& rows, const std::string& name, const Deflection& known,
   constexpr double kTolerance = 0.005;
   const std::string load = join_text(name, " = ", known.load, ": ");
   if (known.angle_deg > 0.0)
-    rows.push_back({load + "tip angle, degrees", known.angle_deg, ours.angle_deg, kTolerance});
-  if (known.x > 0.0) rows.push_back({load + "x / L", known.x, ours.x, kTolerance});
-  rows.push_back({load + "w / L", known.w, ours.w, kTolerance});
+    rows.push_back({load + "tip angle, degrees", known.angle_deg, ours.angle_deg, kTolerance,
+                    "tip angle, degrees", known.load});
+  if (known.x > 0.0)
+    rows.push_back({load + "x / L", known.x, ours.x, kTolerance, "x / L", known.load});
+  rows.push_back({load + "w / L", known.w, ours.w, kTolerance, "w / L", known.load});
 }
 
 }  // namespace
+
+TetMesh rod_mesh() {
+  constexpr Index kCells = 60;
+  return quadratic_mesh({kCells, 1, 1, [](Index i, Index j, Index k) {
+                           return Vec3(kLength * i / kCells, kSide * j, kSide * k);
+                         }});
+}
 
 Rows elastica() {
   // a = P L^2 / (E I); table of the elastica by elliptic integrals

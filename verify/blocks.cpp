@@ -82,12 +82,12 @@ Rows st_venant_kirchhoff() {
   const fem::Lame lame = fem::lame_from(kE, kNu);
   for (const double l : {1.3, 1.1, 0.9, 0.8, 0.7, 0.6}) {
     rows.push_back({join_text("free sides, stretch ", l, ": P, MPa"), 0.5 * kE * l * (l * l - 1.0),
-                    free.pull(l), 1e-8});
+                    free.pull(l), 1e-8, "P, MPa, sides free", l});
     rows.push_back({join_text("free sides, stretch ", l, ": lateral stretch"),
                     std::sqrt(1.0 - kNu * (l * l - 1.0)), free.lateral(), 1e-8});
     rows.push_back({join_text("confined, stretch ", l, ": P, MPa"),
-                    0.5 * (lame.lambda + 2.0 * lame.mu) * l * (l * l - 1.0), confined.pull(l),
-                    1e-8});
+                    0.5 * (lame.lambda + 2.0 * lame.mu) * l * (l * l - 1.0), confined.pull(l), 1e-8,
+                    "P, MPa, sides confined", l});
   }
   // the largest push a block can bear, by golden section on the stretch; one cell, because beyond
   // the limit the strain of a finer block gathers in one layer

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cut_samples.h"
 #include "pair_search.h"
 
 namespace coxa::collide {
@@ -43,6 +44,8 @@ void check(const ContactOptions& options) {
   require(options.search_distance > std::abs(options.minimum_gap),
           "contact search_distance must exceed minimum_gap ", options.minimum_gap, " mm, got ",
           options.search_distance);
+  require(options.quadrature != ContactQuadrature::cut || options.rule == ContactRule::nodal,
+          "contact quadrature cut has other samples at each search: it needs the nodal rule");
   require(-1.0 <= options.facing && options.facing < 1.0, "contact facing must be in [-1, 1), got ",
           options.facing);
 }
@@ -78,7 +81,7 @@ void SurfaceContact::make_samples() {
         seen[v] = true;
       }
     }
-  } else {
+  } else if (options_.quadrature != ContactQuadrature::cut) {
     for (Index t = 0; t < slave_.n_triangles(); ++t) {
       for (const QuadraturePoint& point : quadrature_points(options_.quadrature)) {
         samples_.push_back({.triangle = t, .barycentric = point.barycentric});
@@ -150,7 +153,11 @@ void SurfaceContact::update_pairs(const VecX& x) {
   const Points facet_normals = triangle_normals(slave), normals = vertex_normals(slave);
   const Points other_normals = vertex_normals(other_mesh_);
   const OtherSurface other{*tree_, other_normals, boundary_edge_, boundary_vertex_};
-  update_areas(triangle_areas(slave));
+  if (options_.quadrature == ContactQuadrature::cut) {
+    samples_ = cut_samples(slave, facet_normals, *tree_, options_.search_distance);
+  } else {
+    update_areas(triangle_areas(slave));
+  }
 
   const bool at_vertices = options_.quadrature == ContactQuadrature::vertices;
   std::vector<std::optional<ContactPair>> found(samples_.size());

@@ -2,11 +2,13 @@
 
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
+#include <coxa/mesh/measures.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "collide/shapes.h"
@@ -263,6 +265,107 @@ TEST(SurfaceContact, RejectsBadOptionsWithTheirValue) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::bad_input);
     EXPECT_NE(std::string(error.what()).find("-2"), std::string::npos);
+  }
+}
+
+/// A plate of side 10 over a shifted floor of another mesh; the plate looks down.
+struct PlateOverFloor {
+  TriMesh plate = test::turned_over(test::plate(-0.02, 5.0, 4)), floor = test::plate(0.0, 5.0, 7);
+  VecX x;
+  PlateOverFloor() {
+    floor.points.rowwise() += Eigen::RowVector3d(2.3, -1.1, 0.0);
+    x = test::stacked(plate, floor);
+  }
+  SurfaceContact contact(ContactQuadrature quadrature) const {
+    return SurfaceContact(make_particle_surface(plate.triangles),
+                          make_particle_surface(test::after(plate, floor)),
+                          {.quadrature = quadrature, .rule = ContactRule::nodal});
+  }
+};
+
+TEST(CutQuadrature, CoversExactlyWhereTheSurfacesOverlap) {
+  const PlateOverFloor shapes;
+  SurfaceContact contact = shapes.contact(ContactQuadrature::cut);
+  contact.update_pairs(shapes.x);
+  double area = 0.0;
+  for (const ContactSample& sample : contact.samples(shapes.x)) area += sample.area;
+  EXPECT_NEAR(area, (10.0 - 2.3) * (10.0 - 1.1), 1e-9);
+}
+
+TEST(CutQuadrature, GivesBothSurfacesTheConsistentForcesOfAUniformPressure) {
+  const PlateOverFloor shapes;
+  SurfaceContact contact = shapes.contact(ContactQuadrature::cut);
+  contact.update_pairs(shapes.x);
+  const VecX force = force_of(contact, shapes.x);
+  // inside the overlap a floor vertex carries a third of the areas around it
+  const Points vertices = shapes.floor.points;
+  const VecX areas = triangle_areas(shapes.floor);
+  int inside = 0;
+  for (Index v = 0; v < vertices.rows(); ++v) {
+    double around = 0.0, reach = 0.0;
+    for (Index t = 0; t < shapes.floor.n_triangles(); ++t) {
+      for (int k = 0; k < 3; ++k) {
+        if (shapes.floor.triangles(t, k) != v) continue;
+        around += areas[t] / 3.0;
+        for (int other = 0; other < 3; ++other) {
+          const Vec3 corner = vertices.row(shapes.floor.triangles(t, other));
+          reach = std::max(reach, corner.head<2>().lpNorm<Eigen::Infinity>());
+        }
+      }
+    }
+    if (reach > 5.0) continue;
+    ++inside;
+    EXPECT_NEAR(force[3 * (shapes.plate.n_vertices() + v) + 2], -100.0 * 0.02 * around,
+                1e-9 * around);
+  }
+  EXPECT_GT(inside, 4);
+}
+
+TEST(CutQuadrature, ForceIsTheSlopeOfTheEnergyOnBalls) {
+  SurfaceContact contact(make_particle_surface(ball.triangles),
+                         make_particle_surface(test::after(ball, other_ball)),
+                         {.stiffness = 50.0,
+                          .normal = ContactNormal::smooth,
+                          .quadrature = ContactQuadrature::cut,
+                          .rule = ContactRule::nodal});
+  contact.update_pairs(ball_x);
+  contact.update_multipliers(ball_x);
+  const VecX force = force_of(contact, ball_x);
+  ASSERT_GT(force.norm(), 1.0);
+  for (Index i = 0; i < ball_x.size(); ++i) {
+    if (force[i] == 0.0) continue;
+    VecX ahead = ball_x, behind = ball_x;
+    ahead[i] += 1e-5;
+    behind[i] -= 1e-5;
+    const double slope = (contact.energy(ahead) - contact.energy(behind)) / 2e-5;
+    EXPECT_NEAR(-slope, force[i], 1e-5 * force.lpNorm<Eigen::Infinity>());
+  }
+}
+
+TEST(CutQuadrature, AgreesWithManyPointsOnBallsAndIsBitIdenticalForOneAndEightThreads) {
+  const auto push = [](ContactQuadrature quadrature) {
+    SurfaceContact contact(make_particle_surface(ball.triangles),
+                           make_particle_surface(test::after(ball, other_ball)),
+                           {.stiffness = 50.0,
+                            .normal = ContactNormal::smooth,
+                            .quadrature = quadrature,
+                            .rule = ContactRule::nodal});
+    contact.update_pairs(ball_x);
+    return force_of(contact, ball_x);
+  };
+  const auto run = [&] { return push(ContactQuadrature::cut); };
+  const VecX one = with_threads(1, run), six = push(ContactQuadrature::six_points);
+  EXPECT_EQ(one, with_threads(8, run));
+  EXPECT_LE((one - six).norm(), 0.05 * six.norm());
+}
+
+TEST(CutQuadrature, NeedsTheNodalRule) {
+  try {
+    SurfaceContact(make_particle_surface(ball.triangles), other_ball,
+                   {.quadrature = ContactQuadrature::cut});
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("nodal rule"), std::string::npos);
   }
 }
 

@@ -22,7 +22,9 @@ enum class ContactNormal {
 enum class ContactQuadrature {
   vertices,      ///< once a vertex, a third of the area around it
   three_points,  ///< three points a triangle, exact for quadratics
-  six_points     ///< six points a triangle, exact for quartics
+  six_points,    ///< six points a triangle, exact for quartics
+  cut  ///< three points in each piece of a triangle, cut along the other surface's edges: passes
+       ///< the contact patch test; needs the nodal rule, and costs several times as many samples
 };
 
 /// What is kept from overlapping.
@@ -148,7 +150,7 @@ class SurfaceContact : public dynamics::Force {
   ParticleSurface slave_;
   std::optional<ParticleSurface> other_;  ///< nullopt: rigid obstacle
   TriMesh other_mesh_;                    ///< current positions of the other surface
-  std::vector<ContactSample> samples_;    ///< triangle and barycentric; areas as of the last update
+  std::vector<ContactSample> samples_;    ///< as of the last update of pairs
   Points slave_bulge_, other_bulge_;      ///< per triangle and edge, mm; empty: flat facets
   std::vector<double> multiplier_;        ///< per owner, MPa
   std::vector<double> stiffening_;        ///< per owner, >= 1
