@@ -1,9 +1,20 @@
 #include <coxa/collide/surface_contact.h>
+#include <coxa/core/parallel.h>
 
 #include <algorithm>
 
 namespace coxa::collide {
 namespace {
+
+/// Adds to the entry of a particle; a constraint has few, so looking through them is quickest.
+void add_entry(Index particle, const Vec3& vector, std::vector<std::pair<Index, Vec3>>& entries) {
+  for (auto& [known, sum] : entries) {
+    if (known != particle) continue;
+    sum += vector;
+    return;
+  }
+  entries.emplace_back(particle, vector);
+}
 
 void append_vertex(const ParticleSurface& surface, Index vertex, const Vec3& slope,
                    std::vector<std::pair<Index, Vec3>>& entries) {
@@ -11,7 +22,7 @@ void append_vertex(const ParticleSurface& surface, Index vertex, const Vec3& slo
   const auto last =
       static_cast<std::size_t>(surface.row_start[static_cast<std::size_t>(vertex) + 1]);
   for (std::size_t k = first; k < last; ++k) {
-    entries.emplace_back(surface.particle[k], surface.weight[k] * slope);
+    add_entry(surface.particle[k], surface.weight[k] * slope, entries);
   }
 }
 
@@ -32,18 +43,14 @@ void SurfaceContact::append_entries(const ContactPair& pair, double share, Entri
   }
 }
 
-/// Closes a constraint: one entry a particle, in ascending order.
+/// Closes a constraint: its entries in ascending order of particles.
 void SurfaceContact::append_constraint(ContactConstraint constraint, Entries& entries) {
-  std::stable_sort(entries.begin(), entries.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::sort(entries.begin(), entries.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
   constraint.first = static_cast<Index>(stencil_particles_.size());
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    if (k == 0 || entries[k].first != entries[k - 1].first) {
-      stencil_particles_.push_back(entries[k].first);
-      stencil_vectors_.push_back(entries[k].second);
-    } else {
-      stencil_vectors_.back() += entries[k].second;
-    }
+  for (const auto& [particle, vector] : entries) {
+    stencil_particles_.push_back(particle);
+    stencil_vectors_.push_back(vector);
   }
   constraint.last = static_cast<Index>(stencil_particles_.size());
   constraints_.push_back(constraint);
@@ -75,32 +82,48 @@ void SurfaceContact::make_pointwise_constraints() {
 }
 
 void SurfaceContact::make_nodal_constraints() {
-  // pairs around each vertex, with their shares of its area
-  std::vector<std::vector<std::pair<std::size_t, double>>> around(multiplier_.size());
-  for (std::size_t p = 0; p < pairs_.size(); ++p) {
-    const ContactSample& sample = samples_[static_cast<std::size_t>(pairs_[p].sample)];
-    for (int k = 0; k < 3; ++k) {
-      const double share = sample.barycentric[k] * sample.area;
-      if (share == 0.0) continue;
-      around[static_cast<std::size_t>(slave_.triangles(sample.triangle, k))].emplace_back(p, share);
+  // pairs around each vertex, with their shares of its area, ascending
+  const auto n = multiplier_.size();
+  std::vector<std::size_t> start(n + 1, 0);
+  const auto for_each_share = [&](const auto& take) {
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      const ContactSample& sample = samples_[static_cast<std::size_t>(pairs_[p].sample)];
+      for (int k = 0; k < 3; ++k) {
+        const double share = sample.barycentric[k] * sample.area;
+        if (share == 0.0) continue;
+        take(static_cast<std::size_t>(slave_.triangles(sample.triangle, k)), p, share);
+      }
     }
-  }
-  Entries entries;
-  for (std::size_t v = 0; v < around.size(); ++v) {
-    if (around[v].empty()) {
+  };
+  for_each_share([&](std::size_t v, std::size_t, double) { ++start[v + 1]; });
+  for (std::size_t v = 0; v < n; ++v) start[v + 1] += start[v];
+  std::vector<std::pair<std::size_t, double>> around(start.back());
+  std::vector<std::size_t> next(start.begin(), start.end() - 1);
+  for_each_share([&](std::size_t v, std::size_t p, double share) {
+    around[next[v]++] = {p, share};
+  });
+
+  std::vector<ContactConstraint> made(n);
+  std::vector<Entries> entries(n);
+  parallel_for(static_cast<std::int64_t>(n), [&](Index vertex) {
+    const auto v = static_cast<std::size_t>(vertex);
+    ContactConstraint& constraint = made[v];
+    constraint.owner = vertex;
+    for (std::size_t k = start[v]; k < start[v + 1]; ++k) constraint.area += around[k].second;
+    for (std::size_t k = start[v]; k < start[v + 1]; ++k) {
+      const ContactPair& pair = pairs_[around[k].first];
+      const double weight = around[k].second / constraint.area;
+      append_entries(pair, weight, entries[v]);
+      constraint.normal += weight * pair.normal;
+      constraint.offset += weight * (pair.offset + obstacle_height(pair));
+    }
+  });
+  for (std::size_t v = 0; v < n; ++v) {
+    if (start[v] == start[v + 1]) {
       forget(v);
-      continue;
+    } else {
+      append_constraint(made[v], entries[v]);
     }
-    ContactConstraint constraint{.owner = static_cast<Index>(v)};
-    for (const auto& [p, share] : around[v]) constraint.area += share;
-    entries.clear();
-    for (const auto& [p, share] : around[v]) {
-      const double weight = share / constraint.area;
-      append_entries(pairs_[p], weight, entries);
-      constraint.normal += weight * pairs_[p].normal;
-      constraint.offset += weight * (pairs_[p].offset + obstacle_height(pairs_[p]));
-    }
-    append_constraint(constraint, entries);
   }
 }
 

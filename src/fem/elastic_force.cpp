@@ -42,6 +42,19 @@ double ElasticForce::energy(const VecX& x) const {
       [&](Index e, int q) { return material_->energy_density(assembly_->gradient_of(x, e, q)); });
 }
 
+double ElasticForce::add_force_with_energy(const VecX& x, VecX& force) const {
+  VecX energy = VecX::Zero(n_elements());
+  assembly_->add_force(
+      [&](Index e, int q) {
+        Mat3 P;
+        energy[e] += assembly_->weight(e, q) *
+                     material_->energy_with_piola(assembly_->gradient_of(x, e, q), P);
+        return P;
+      },
+      force);
+  return energy.sum();
+}
+
 void ElasticForce::set_offsets(const Points& offset) { assembly_->set_offsets(offset); }
 
 Points ElasticForce::node_positions(const VecX& x) const { return assembly_->node_positions(x); }

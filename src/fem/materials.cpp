@@ -5,18 +5,13 @@
 
 #include <cmath>
 
+#include "lame_check.h"
 #include "mode_tensors.h"
 #include "point_blocks.h"
-#include "polar_rotation.h"
 #include "principal_material.h"
 
 namespace coxa::fem {
 namespace {
-
-void check(const Lame& lame) {
-  require(lame.mu > 0.0 && lame.lambda + 2.0 / 3.0 * lame.mu > 0.0, "Lame parameters lambda ",
-          lame.lambda, ", mu ", lame.mu, " MPa do not give a stable material");
-}
 
 class StVenantKirchhoff : public Material {
  public:
@@ -72,35 +67,6 @@ class StVenantKirchhoff : public Material {
   Mat3 second_piola(const Mat3& F) const {
     const Mat3 E = green_strain(F);
     return 2.0 * lame_.mu * E + lame_.lambda * E.trace() * Mat3::Identity();
-  }
-  Lame lame_;
-};
-
-class Corotational : public PrincipalMaterial {
- public:
-  explicit Corotational(const Lame& lame) : lame_(lame) { check(lame); }
-
-  // energy and stress need the rotation only, which is cheaper than the singular values
-  double energy_density(const Mat3& F) const override {
-    const auto R = polar_rotation(F);
-    if (!R) return PrincipalMaterial::energy_density(F);
-    const double sum = R->cwiseProduct(F).sum() - 3.0;
-    return lame_.mu * (F - *R).squaredNorm() + 0.5 * lame_.lambda * sum * sum;
-  }
-  Mat3 first_piola(const Mat3& F) const override {
-    const auto R = polar_rotation(F);
-    if (!R) return PrincipalMaterial::first_piola(F);
-    const double sum = R->cwiseProduct(F).sum() - 3.0;
-    return 2.0 * lame_.mu * (F - *R) + lame_.lambda * sum * *R;
-  }
-
- private:
-  PrincipalResponse respond(const Vec3& s) const override {
-    const Vec3 e = s - Vec3::Ones();
-    const double sum = e.sum();
-    return {lame_.mu * e.squaredNorm() + 0.5 * lame_.lambda * sum * sum,
-            2.0 * lame_.mu * e + lame_.lambda * sum * Vec3::Ones(),
-            2.0 * lame_.mu * Mat3::Identity() + lame_.lambda * Mat3::Ones()};
   }
   Lame lame_;
 };
@@ -272,6 +238,11 @@ class VerondaWestmann : public PrincipalMaterial {
 
 }  // namespace
 
+double Material::energy_with_piola(const Mat3& F, Mat3& P) const {
+  P = first_piola(F);
+  return energy_density(F);
+}
+
 void Material::add_blocks(const Mat3& F, Tangent kind, double factor, std::span<const Vec3> r,
                           Mat3* blocks) const {
   add_tangent_blocks(tangent(F, kind), factor, r, blocks);
@@ -290,9 +261,6 @@ Mat3 cauchy_from(const Mat3& P, const Mat3& F) {
 
 std::unique_ptr<Material> make_st_venant_kirchhoff(const Lame& lame) {
   return std::make_unique<StVenantKirchhoff>(lame);
-}
-std::unique_ptr<Material> make_corotational(const Lame& lame) {
-  return std::make_unique<Corotational>(lame);
 }
 std::unique_ptr<Material> make_neo_hookean(const Lame& lame) {
   return std::make_unique<NeoHookean>(lame);

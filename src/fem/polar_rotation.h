@@ -6,9 +6,12 @@
 
 namespace coxa::fem {
 
-/// The rotation R of F = R U with U symmetric and positive definite; nullopt where F is inverted or
-/// so nearly singular that its rotation is better taken from its singular values.
-/// Source: Higham 1986, Newton's iteration for the polar decomposition.
+/// The rotation R of F = R U with U symmetric and at most its smallest stretch negative: the
+/// slope of the sum of the stretches by F, in closed form from the invariants of F.
+///
+/// @returns nullopt where two stretches nearly cancel, so that R is hardly defined
+/// Source: the sum of stretches as the largest root of a quartic, Horn 1987 (absolute orientation)
+/// and Hoger and Carlson 1984 (stretch from invariants); R as its derivative is ours.
 std::optional<Mat3> polar_rotation(const Mat3& F);
 
 }  // namespace coxa::fem

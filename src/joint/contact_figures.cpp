@@ -1,5 +1,9 @@
+#include <coxa/core/parallel.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "frame_figures.h"
 
@@ -29,20 +33,43 @@ double pressure_percentile(const std::vector<collide::ContactSample>& samples, d
 }
 
 double patch_peak(const std::vector<collide::ContactSample>& samples, double area) {
-  const std::vector<collide::ContactSample> kept = pressed(samples);
-  const double squared_radius = area / kPi;
-  double peak = 0.0;
-  for (const auto& centre : kept) {
+  // samples by cells as wide as the disc's radius, so that 27 cells hold all that a disc can
+  const double radius = std::sqrt(area / kPi);
+  using Cell = std::array<std::int64_t, 3>;
+  const auto cell_of = [&](const Vec3& point) {
+    return Cell{std::llround(point[0] / radius), std::llround(point[1] / radius),
+                std::llround(point[2] / radius)};
+  };
+  std::vector<std::pair<Cell, std::size_t>> order;
+  for (std::size_t s = 0; s < samples.size(); ++s) order.emplace_back(cell_of(samples[s].point), s);
+  std::sort(order.begin(), order.end());
+
+  const auto mean_around = [&](const Vec3& centre) {
     double force = 0.0, covered = 0.0;
-    for (const auto& sample : samples) {
-      if ((sample.point - centre.point).squaredNorm() > squared_radius) continue;
-      force += sample.pressure * sample.area;
-      covered += sample.area;
+    const Cell middle = cell_of(centre);
+    for (std::int64_t x = middle[0] - 1; x <= middle[0] + 1; ++x) {
+      for (std::int64_t y = middle[1] - 1; y <= middle[1] + 1; ++y) {
+        // cells along z stand side by side
+        auto at = std::lower_bound(order.begin(), order.end(),
+                                   std::pair{Cell{x, y, middle[2] - 1}, std::size_t{0}});
+        for (; at != order.end() && at->first <= Cell{x, y, middle[2] + 1}; ++at) {
+          const collide::ContactSample& sample = samples[at->second];
+          if ((sample.point - centre).squaredNorm() > radius * radius) continue;
+          force += sample.pressure * sample.area;
+          covered += sample.area;
+        }
+      }
     }
     // where the surface ends within the disc, the rest of the patch carries nothing
-    peak = std::max(peak, force / std::max(covered, 0.75 * area));
-  }
-  return peak;
+    return force / std::max(covered, 0.75 * area);
+  };
+  return parallel_reduce(
+      static_cast<std::int64_t>(samples.size()), 0.0,
+      [&](Index s) {
+        const auto& sample = samples[static_cast<std::size_t>(s)];
+        return sample.pressure > 0.0 ? mean_around(sample.point) : 0.0;
+      },
+      [](double a, double b) { return std::max(a, b); });
 }
 
 }  // namespace coxa::joint

@@ -96,16 +96,29 @@ Equilibrium::Equilibrium(const HipSystem& system, LoadMode mode, const JointOpti
       mode_(mode),
       options_(options),
       free_(system.free_particles(mode)),
+      elastic_(system),
       tangent_(free_, dynamics::total_pattern(system.elastic())) {}
 
-VecX node_forces(const HipSystem& system, const HipState& state) {
-  VecX sum = dynamics::total_force(system.elastic(), state.x, VecX::Zero(state.x.size()));
+void ElasticState::update(const VecX& x) {
+  if (x_.size() == x.size() && x_ == x) return;
+  force_ = system_.elastic_force(x, energy_);
+  x_ = x;
+}
+
+VecX Equilibrium::node_forces(const HipState& state) {
+  VecX sum = elastic_.force(state.x);
   state.contact.add_force(state.x, VecX(), sum);
   return sum;
 }
 
-VecX Equilibrium::residual(const HipState& state, const Vec3& force) const {
-  VecX sum = node_forces(system_, state);
+VecX Equilibrium::residual(const HipState& state, const Vec3& force) {
+  return residual(state.x, state.contact, force);
+}
+
+VecX Equilibrium::residual(const VecX& x, const collide::SurfaceContact& contact,
+                           const Vec3& force) {
+  VecX sum = elastic_.force(x);
+  contact.add_force(x, VecX(), sum);
   if (mode_ == LoadMode::force) sum.segment<3>(3 * system_.translation()) += force;
   for (std::size_t i = 0; i < free_.size(); ++i) {
     if (!free_[i]) sum.segment<3>(3 * static_cast<Eigen::Index>(i)).setZero();
@@ -121,13 +134,8 @@ double Equilibrium::reference_force(const HipState& state, const Vec3& force) co
 
 SolveReport Equilibrium::relax(HipState& state, const Vec3& force, double tolerance,
                                double reference) {
-  HipState trial{state.x, state.pose, state.contact};
-  const auto at = [&](const VecX& x) -> const HipState& {
-    trial.x = x;
-    return trial;
-  };
   const solve::NewtonProblem problem{
-      .residual = [&](const VecX& x) { return residual(at(x), force); },
+      .residual = [&](const VecX& x) { return residual(x, state.contact, force); },
       .step =
           [&](const VecX& x, const VecX& r) {
             if (tangent_age_ == 0 || tangent_age_ > kTangentAge) {
@@ -145,7 +153,7 @@ SolveReport Equilibrium::relax(HipState& state, const Vec3& force, double tolera
           [&](const VecX& x) {
             const double work =
                 mode_ == LoadMode::force ? force.dot(x.segment<3>(3 * system_.translation())) : 0.0;
-            return dynamics::total_energy(system_.elastic(), x) + state.contact.energy(x) - work;
+            return elastic_.energy(x) + state.contact.energy(x) - work;
           }};
   return solve::newton(problem, state.x,
                        {.tolerance = tolerance,
@@ -227,7 +235,7 @@ double Equilibrium::net_force(const VecX& residual) const {
   return std::max(socket.norm(), head.norm());
 }
 
-Settling Equilibrium::judge(const HipState& state, const Vec3& force, const Limits& limits) const {
+Settling Equilibrium::judge(const HipState& state, const Vec3& force, const Limits& limits) {
   Settling settling;
   const double reference = reference_force(state, force);
   const VecX left = residual(state, force);

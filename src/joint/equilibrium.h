@@ -17,8 +17,22 @@ struct HipState {
   collide::SurfaceContact contact;
 };
 
-/// Forces on all particles at a state, held ones included, without the joint force: N.
-VecX node_forces(const HipSystem& system, const HipState& state);
+/// Elastic forces and energy at the positions last asked for: a round of settling asks several
+/// times for the same ones.
+class ElasticState {
+ public:
+  /// @note keeps a reference to the system, which must outlive it
+  explicit ElasticState(const HipSystem& system) : system_(system) {}
+  const VecX& force(const VecX& x) { return update(x), force_; }  ///< N, on all particles
+  double energy(const VecX& x) { return update(x), energy_; }     ///< N·mm
+
+ private:
+  void update(const VecX& x);
+
+  const HipSystem& system_;
+  VecX x_, force_;
+  double energy_ = 0.0;
+};
 
 /// How well a state is settled, and what it cost.
 struct Settling {
@@ -46,8 +60,11 @@ class Equilibrium {
   /// Finds the equilibrium from the positions in `state`.
   Settling settle(HipState& state, const Vec3& force, Exactness exactness, const Monitor& monitor);
 
+  /// Forces on all particles at a state, held ones included, without the joint force: N.
+  VecX node_forces(const HipState& state);
+  double elastic_energy(const HipState& state) { return elastic_.energy(state.x); }  ///< N·mm
   /// Forces of free particles at the state, N, zero at held ones.
-  VecX residual(const HipState& state, const Vec3& force) const;
+  VecX residual(const HipState& state, const Vec3& force);
   /// Size against which residuals count: the joint force, or the contact force of a prescribed
   /// pose, N.
   double reference_force(const HipState& state, const Vec3& force) const;
@@ -56,7 +73,8 @@ class Equilibrium {
   struct Limits {
     double residual, imbalance, penetration;
   };
-  Settling judge(const HipState& state, const Vec3& force, const Limits& limits) const;
+  Settling judge(const HipState& state, const Vec3& force, const Limits& limits);
+  VecX residual(const VecX& x, const collide::SurfaceContact& contact, const Vec3& force);
   double net_force(const VecX& residual) const;
   SolveReport relax(HipState& state, const Vec3& force, double tolerance, double reference);
   std::string touch(HipState& state, const Vec3& direction) const;
@@ -65,6 +83,7 @@ class Equilibrium {
   LoadMode mode_;
   const JointOptions& options_;
   std::vector<bool> free_;
+  ElasticState elastic_;
   HipTangent tangent_;
   int tangent_age_ = 0;  ///< linear solves since the elastic tangent was taken
 };

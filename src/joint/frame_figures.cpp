@@ -1,7 +1,7 @@
 #include "frame_figures.h"
 
-#include <coxa/dynamics/system.h>
-#include <coxa/joint/simulate.h>
+#include <coxa/core/parallel.h>
+#include <coxa/fem/results.h>
 #include <coxa/mesh/measures.h>
 
 #include <algorithm>
@@ -108,9 +108,27 @@ void fill_displacements(FrameResult& frame, const JointModel& model, const HipSy
   }
 }
 
+/// What sectors average, of every socket element: effective strain and least principal strain
+/// (Green).
+struct ElementStrains {
+  VecX effective, least;
+};
+
+ElementStrains element_strains(const fem::ElasticForce& elasticity, const VecX& x) {
+  ElementStrains strains{VecX(elasticity.n_elements()), VecX(elasticity.n_elements())};
+  parallel_for(elasticity.n_elements(), [&](Index e) {
+    const Mat3 F = elasticity.deformation_gradient(x, e);
+    const Mat3 E = 0.5 * (F.transpose() * F - Mat3::Identity());
+    const Mat3 deviator = E - E.trace() / 3.0 * Mat3::Identity();
+    strains.effective[e] = std::sqrt(2.0 / 3.0) * deviator.norm();
+    strains.least[e] = fem::principal_values(E)[2];
+  });
+  return strains;
+}
+
 template <std::size_t N>
 void fill_sectors(std::array<SectorFigures, N>& sectors, const JointModel& model,
-                  const StressFields& fields, const std::vector<collide::ContactSample>& samples,
+                  const ElementStrains& strains, const std::vector<collide::ContactSample>& samples,
                   const std::function<std::size_t(const Vec3&)>& sector_of) {
   const TetMesh& mesh = model.acetabular_cartilage;
   std::array<double, N> strain{}, compression{}, area{}, force{};
@@ -120,11 +138,9 @@ void fill_sectors(std::array<SectorFigures, N>& sectors, const JointModel& model
     Mat3 edges;
     for (int k = 0; k < 3; ++k) edges.col(k) = (corners.row(k + 1) - corners.row(0)).transpose();
     const double volume = edges.determinant() / 6.0;
-    const Vec3 principal = fields.principal_strain.row(t);
-    const Vec3 deviator = principal.array() - principal.mean();
     sectors[sector].volume += volume;
-    strain[sector] += volume * std::sqrt(2.0 / 3.0 * deviator.squaredNorm());
-    compression[sector] += volume * principal[2];
+    strain[sector] += volume * strains.effective[t];
+    compression[sector] += volume * strains.least[t];
   }
   for (const collide::ContactSample& sample : samples) {
     const std::size_t sector = sector_of(sample.point);
@@ -142,8 +158,7 @@ void fill_sectors(std::array<SectorFigures, N>& sectors, const JointModel& model
 
 }  // namespace
 
-Reactions bone_reactions(const HipSystem& system, const HipState& state) {
-  const VecX force = node_forces(system, state);
+Reactions bone_reactions(const HipSystem& system, const VecX& force) {
   Reactions reactions;
   for (const Index i : system.socket_nodes()) reactions.socket += force.segment<3>(3 * i);
   for (const Index i : system.femur_nodes()) reactions.femur += force.segment<3>(3 * i);
@@ -151,7 +166,7 @@ Reactions bone_reactions(const HipSystem& system, const HipState& state) {
 }
 
 void update_figures(FrameResult& frame, const JointModel& model, const HipSystem& system,
-                    const HipState& state, const ClockFace& clock) {
+                    Equilibrium& equilibrium, const HipState& state, const ClockFace& clock) {
   const std::vector<collide::ContactSample> samples = state.contact.samples(state.x);
   const Vec3 force = contact_force(state.contact, state.x);
   fill_displacements(frame, model, system, state);
@@ -160,10 +175,10 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
   fill_head_nodes(frame, model, system, state);
 
   BalanceFigures& balance = frame.balance;
-  const Reactions reactions = bone_reactions(system, state);
+  const Reactions reactions = bone_reactions(system, equilibrium.node_forces(state));
   balance.socket_reaction = reactions.socket;
   balance.femur_reaction = reactions.femur;
-  balance.elastic_energy = dynamics::total_energy(system.elastic(), state.x);
+  balance.elastic_energy = equilibrium.elastic_energy(state);
   for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
     const double gap = std::min(0.0, state.contact.gap(constraint, state.x));
     frame.contact.penetration = std::max(frame.contact.penetration, -gap);
@@ -177,11 +192,11 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
     balance.force_error = (force - balance.applied_force).norm() / balance.applied_force.norm();
   }
 
-  const StressFields fields = acetabular_fields(model, frame);
-  fill_sectors(frame.sectors, model, fields, samples,
+  const ElementStrains strains = element_strains(system.socket_elasticity(), state.x);
+  fill_sectors(frame.sectors, model, strains, samples,
                [&](const Vec3& p) { return static_cast<std::size_t>(clock.sector(p)); });
   // regions are two hours wide, the first around twelve
-  fill_sectors(frame.regions, model, fields, samples, [&](const Vec3& p) {
+  fill_sectors(frame.regions, model, strains, samples, [&](const Vec3& p) {
     return static_cast<std::size_t>(std::floor((clock.hour(p) + 1.0) / 2.0)) % 6;
   });
 }

@@ -8,7 +8,7 @@ namespace coxa::joint {
 
 /// Fills what a converged frame reports: nodal fields, contact, balance, sectors.
 void update_figures(FrameResult& frame, const JointModel& model, const HipSystem& system,
-                    const HipState& state, const ClockFace& clock);
+                    Equilibrium& equilibrium, const HipState& state, const ClockFace& clock);
 
 /// Pressure below which `share` of the pressed area lies, MPa; 0 without contact.
 double pressure_percentile(const std::vector<collide::ContactSample>& samples, double share);
@@ -21,6 +21,6 @@ double patch_peak(const std::vector<collide::ContactSample>& samples, double are
 struct Reactions {
   Vec3 socket = Vec3::Zero(), femur = Vec3::Zero();
 };
-Reactions bone_reactions(const HipSystem& system, const HipState& state);
+Reactions bone_reactions(const HipSystem& system, const VecX& node_forces);
 
 }  // namespace coxa::joint

@@ -117,6 +117,13 @@ std::vector<const dynamics::Force*> HipSystem::elastic() const {
   return {socket_elasticity_.get(), femur_elasticity_.get()};
 }
 
+VecX HipSystem::elastic_force(const VecX& x, double& energy) const {
+  VecX force = VecX::Zero(x.size());
+  energy = socket_elasticity_->add_force_with_energy(x, force);
+  energy += femur_elasticity_->add_force_with_energy(x, force);
+  return force;
+}
+
 std::vector<bool> HipSystem::free_particles(LoadMode mode) const {
   std::vector<bool> free(static_cast<std::size_t>(n_particles()), true);
   for (const Index i : socket_nodes_) free[static_cast<std::size_t>(i)] = false;

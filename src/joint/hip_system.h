@@ -2,6 +2,7 @@
 
 #include <coxa/collide/surface_contact.h>
 #include <coxa/dynamics/particles.h>
+#include <coxa/fem/elastic_force.h>
 #include <coxa/joint/joint_model.h>
 #include <coxa/joint/load_case.h>
 
@@ -42,6 +43,9 @@ class HipSystem {
 
   collide::SurfaceContact make_contact(double stiffness) const;
   std::vector<const dynamics::Force*> elastic() const;
+  /// Elastic force of both cartilages at x on all particles, N; sets their energy, N·mm.
+  VecX elastic_force(const VecX& x, double& energy) const;
+  const fem::ElasticForce& socket_elasticity() const { return *socket_elasticity_; }
   /// Particles that may move; t only when it is free.
   std::vector<bool> free_particles(LoadMode mode) const;
   /// Held nodes of the acetabular and of the femoral bone side.
@@ -57,7 +61,7 @@ class HipSystem {
   Index n_acetabular_, n_femoral_;
   Vec3 centre_;
   std::vector<Index> socket_nodes_, femur_nodes_;
-  std::unique_ptr<dynamics::Force> socket_elasticity_, femur_elasticity_;
+  std::unique_ptr<fem::ElasticForce> socket_elasticity_, femur_elasticity_;
   double foundation_stiffness_ = 0.0;
 };
 

@@ -77,7 +77,7 @@ FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
   if (settling.converged) {
     frame.translation = found();
     frame.balance.applied_force = force;
-    update_figures(frame, model, system, state, clock);
+    update_figures(frame, model, system, equilibrium, state, clock);
   }
   frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return frame;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace coxa::joint {
 
@@ -16,8 +17,8 @@ double March::sub_step(const BonePose& from, const BonePose& to) const {
 }
 
 /// Mean of the forces at both ends times the way of every held femoral node (trapezium rule).
-double March::work_between(const HipState& before, const HipState& after) const {
-  const VecX first = node_forces(system_, before), last = node_forces(system_, after);
+double March::work_between(const HipState& before, const HipState& after, const VecX& first,
+                           const VecX& last) const {
   const Vec3 shift = after.x.segment<3>(3 * system_.translation()) -
                      before.x.segment<3>(3 * system_.translation());
   double work = 0.0;
@@ -34,6 +35,7 @@ Settling March::advance(HipState& state, const BonePose& target, const Vec3& for
   const double work_at_start = work_;
   double done = 0.0, step = sub_step(start.pose, target);
   int iterations = 0, cutbacks = 0;
+  VecX forces = equilibrium_.node_forces(state);
   while (true) {
     const double next = done + step > 1.0 - 1e-9 ? 1.0 : done + step;
     HipState trial = state;
@@ -44,7 +46,9 @@ Settling March::advance(HipState& state, const BonePose& target, const Vec3& for
     iterations += settling.iterations;
     settling.iterations = iterations;
     if (settling.converged) {
-      work_ += work_between(state, trial);
+      VecX forces_there = equilibrium_.node_forces(trial);
+      work_ += work_between(state, trial, forces, forces_there);
+      forces = std::move(forces_there);
       state = std::move(trial);
       done = next;
       if (done == 1.0) return settling;

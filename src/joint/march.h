@@ -21,7 +21,8 @@ class March {
 
  private:
   double sub_step(const BonePose& from, const BonePose& to) const;
-  double work_between(const HipState& before, const HipState& after) const;
+  double work_between(const HipState& before, const HipState& after, const VecX& first,
+                      const VecX& last) const;
 
   const HipSystem& system_;
   const JointOptions& options_;

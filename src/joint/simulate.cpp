@@ -140,7 +140,7 @@ void Simulation::run_frame(FrameResult& frame) {
       frame.translation = target.shift + found();
       frame.balance.applied_force = force(frame.frame);
       frame.balance.work = march_.work();
-      update_figures(frame, model_, system_, state_, result_.clock);
+      update_figures(frame, model_, system_, march_.equilibrium(), state_, result_.clock);
     }
   }
   previous_ = target;

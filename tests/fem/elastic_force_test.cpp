@@ -41,6 +41,14 @@ TEST_P(EitherElement, HasTheForceOfItsEnergyAndTheJacobianOfItsForce) {
   const MatX K = dynamics::test::given_stiffness(force, x, v);
   EXPECT_LE((K - dynamics::test::numeric_stiffness(force, x, v)).norm(), 1e-8 * K.norm());
 }
+TEST_P(EitherElement, GivesForceAndEnergyTogetherAsApart) {
+  const ElasticForce force(mesh, make_corotational(kCartilage));
+  const VecX x = perturbed(test::stacked(mesh.points), 0.03);
+  VecX f = VecX::Zero(x.size());
+  const double energy = force.add_force_with_energy(x, f);
+  EXPECT_NEAR(energy, force.energy(x), 1e-13 * energy);
+  EXPECT_EQ(f, dynamics::test::force_at(force, x, no_velocity(x)));
+}
 TEST_P(EitherElement, KeepsForceAndMomentBalanced) {
   const ElasticForce force(mesh, make_neo_hookean(kCartilage));
   const VecX x = perturbed(test::stacked(mesh.points), 0.03);

@@ -45,6 +45,8 @@ class ElasticForce : public dynamics::Force {
   void add_jacobian(const VecX& x, const VecX& v, double stiffness_factor, double damping_factor,
                     solve::BlockMatrix& A) const override;
   double energy(const VecX& x) const override;
+  /// Adds the force and returns the energy, for little more than the force alone costs.
+  double add_force_with_energy(const VecX& x, VecX& force) const;
 
   /// Replaces the offsets of the nodes, for the next pose of a bone; N×3, mm.
   void set_offsets(const Points& offset);

@@ -32,6 +32,9 @@ class Material {
   virtual double energy_density(const Mat3& F) const = 0;
   /// P = dW/dF, MPa.
   virtual Mat3 first_piola(const Mat3& F) const = 0;
+  /// Both at once, which costs less for laws that need the same of F for either; returns the energy
+  /// density and sets P, whatever it is where the energy is infinite.
+  virtual double energy_with_piola(const Mat3& F, Mat3& P) const;
   /// dP/dF, 9×9 over the columns of F one after the other: entry (a + 3k, b + 3l) is dP_ak / dF_bl.
   virtual Mat9 tangent(const Mat3& F, Tangent kind) const = 0;
   /// Adds the blocks of an element's stiffness at one point: factor * r_a : tangent : r_b to block
