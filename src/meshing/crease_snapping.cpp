@@ -38,7 +38,7 @@ double worst_energy(const TetGrid& grid, Index v) {
 
 }  // namespace
 
-Index snap_to_creases(TetGrid& grid, const SlideGuide& guide) {
+Index snap_to_creases(TetGrid& grid, const SheetGuide& guide) {
   Index snapped = 0;
   for (Index v = 0; v < static_cast<Index>(grid.x.size()); ++v) {
     const NodeKind kind = grid.kinds[at(v)];

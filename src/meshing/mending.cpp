@@ -1,11 +1,11 @@
 #include "mending.h"
 
+#include "grid_topology.h"
 #include "node_freedom.h"
 #include "node_smoothing.h"
 #include "worst_elements.h"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 namespace coxa::meshing {
@@ -41,43 +41,6 @@ std::vector<char> with_neighbours(const TetGrid& grid, const std::vector<char>& 
 void let_all_go(TetGrid& grid, const std::vector<char>& marked, double reach) {
   for (std::size_t v = 0; v < marked.size(); ++v)
     if (marked[v]) let_go(grid, static_cast<Index>(v), reach);
-}
-
-using Facet = std::array<Index, 3>;
-
-Facet facet_opposite(const Tet& t, std::size_t corner) {
-  Facet f{};
-  for (std::size_t k = 0, n = 0; k < 4; ++k)
-    if (k != corner) f[n++] = t[k];
-  return f;
-}
-
-bool contains(const Tet& t, Index v) { return std::find(t.begin(), t.end(), v) != t.end(); }
-
-bool on_boundary(const TetGrid& grid, const Facet& f) {
-  int count = 0;
-  for (const Index t : grid.around[at(f[0])])
-    count += contains(grid.tets[at(t)], f[1]) && contains(grid.tets[at(t)], f[2]);
-  return count == 1;
-}
-
-bool edge_on_boundary(const TetGrid& grid, Index a, Index b) {
-  for (const Index t : grid.around[at(a)]) {
-    const Tet& tet = grid.tets[at(t)];
-    if (!contains(tet, b)) continue;
-    for (std::size_t k = 0; k < 4; ++k)
-      if (tet[k] != a && tet[k] != b && on_boundary(grid, facet_opposite(tet, k))) return true;
-  }
-  return false;
-}
-
-bool node_on_boundary(const TetGrid& grid, Index v) {
-  for (const Index t : grid.around[at(v)]) {
-    const Tet& tet = grid.tets[at(t)];
-    for (std::size_t k = 0; k < 4; ++k)
-      if (tet[k] != v && on_boundary(grid, facet_opposite(tet, k))) return true;
-  }
-  return false;
 }
 
 // taking the element away must only push the boundary in: its outer facets form one disc

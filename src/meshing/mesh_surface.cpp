@@ -1,18 +1,13 @@
 #include <coxa/meshing/mesh_surface.h>
 
-#include "crease_snapping.h"
-#include "extrude.h"
-#include "mending.h"
-#include "node_freedom.h"
-#include "node_smoothing.h"
-#include "tet_boundary.h"
-#include "worst_elements.h"
+#include "sheet_mesh.h"
+#include "solid_mesh.h"
 
 #include <coxa/core/error.h>
-#include <coxa/medial/medial_sheet.h>
 #include <coxa/mesh/topology.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace coxa::meshing {
 namespace {
@@ -21,126 +16,64 @@ namespace {
 constexpr double kSheet = 0.7;
 // above this thickness relative to the width of a face a body is no sheet
 constexpr double kThick = 0.35;
-constexpr int kSizeTries = 8;
 
 void check(const MeshingOptions& o) {
   require(!o.layers || (*o.layers >= 1 && *o.layers <= 8), "layers must be 1 to 8, got ",
           o.layers.value_or(0));
-  require(o.method != Method::lattice,
-          "solid bodies cannot be filled yet: only the medial method is there");
   require(o.order == ElementOrder::four_node, "ten-node elements are not made yet");
-  require(o.max_tets > 100, "max_tets must be above 100, got ", o.max_tets);
+  require(o.max_tets.value_or(101) > 100, "max_tets must be above 100, got ",
+          o.max_tets.value_or(0));
   require(o.cell_per_thickness > 0, "cell_per_thickness must be > 0, got ", o.cell_per_thickness);
   require(o.rim_rounding >= 0 && o.rim_rounding <= 0.25,
           "rim_rounding must be in [0, 0.25] mm, got ", o.rim_rounding);
   require(o.improvement_rounds >= 0, "improvement_rounds must be >= 0, got ", o.improvement_rounds);
 }
 
-void improve(TetGrid& grid, const SlideGuide& guide, int rounds, const Monitor& monitor) {
-  constexpr int kSnapRound = 2;   // bends of the surface are met once nodes are spread evenly
-  constexpr int kMeanRounds = 5;  // first the average, then the worst
-  for (int k = 0; k < rounds; ++k) {
-    monitor.check_cancelled();
-    monitor.progress("improve", static_cast<double>(k) / rounds);
-    if (k == kSnapRound) snap_to_creases(grid, guide);
-    update_positions(grid, guide, k < kMeanRounds ? 1.0 : 3.0);
-  }
-  for (int k = 0; k < rounds && raise_worst(grid, guide) > 0; ++k) monitor.check_cancelled();
+SheetLikeness likeness_of(const medial::SurfaceSides& sides) {
+  SheetLikeness result{sides.sheetness, sides.relative_thickness, ""};
+  if (sides.sheetness < kSheet || sides.relative_thickness > kThick)
+    result.why_not = join_text("the body is no sheet: ", 100.0 * sides.sheetness,
+                               " % of its surface faces another part of it, at ",
+                               sides.relative_thickness, " times the width of a face");
+  return result;
 }
 
-// sheet and extrusion of as many elements as allowed, or of as many as the thickness asks for
-Extrusion extrude_within(const medial::FacePair& faces, const SlideGuide& guide,
-                         const MeshingOptions& options, const Monitor& monitor) {
-  constexpr double kWellFilled =
-      0.94;  // share of the elements allowed from which it is not tried again
-  const int layers = options.layers.value_or(1);
-  medial::MedialOptions sheet_options{.cell_per_thickness = options.cell_per_thickness / layers};
-  sheet_options.knife_edge_rounding = options.rim_rounding;
-  sheet_options.max_cells = std::max(8, options.max_tets / (3 * layers));
-  std::optional<Extrusion> best;
-  for (int attempt = 0; attempt < kSizeTries; ++attempt) {
-    const auto sheet = medial::fit_medial_sheet(faces, sheet_options, monitor);
-    Extrusion made = extrude(sheet, guide, layers);
-    const double filled = static_cast<double>(made.grid.tets.size()) / options.max_tets;
-    if (filled <= 1.0 && (!best || best->grid.tets.size() < made.grid.tets.size())) {
-      best = std::move(made);
-    }
-    const bool limited = sheet.cells.rows() > sheet_options.max_cells / 2;
-    if (filled <= 1.0 && (filled >= kWellFilled || !limited || attempt >= 1)) break;
-    sheet_options.max_cells =
-        std::max(8, static_cast<int>(0.97 / filled * sheet_options.max_cells));
-  }
-  if (!best) {
-    fail(ErrorCode::below_quality, "no mesh of at most ", options.max_tets,
-         " tetrahedra was found; allow more of them");
-  }
-  return std::move(*best);
-}
-
-// until no element is inverted: by moving nodes, or where the sheet is crumpled by dropping cells
-void bring_back_inverted(Extrusion& made, const SlideGuide& guide, MeshingReport& report) {
-  constexpr int kTries = 6;
-  Index inverted = untangle(made.grid, guide), dropped = 0;
-  for (int k = 0; inverted > 0; ++k) {
-    inverted = untangle_freely(made.grid, guide);
-    if (inverted == 0) break;
-    if (k == kTries || 20 * dropped > static_cast<Index>(made.cells.size()))
-      fail(ErrorCode::below_quality, inverted, " elements stay inverted");
-    dropped = drop_inverted_cells(made);
-    inverted = count_inverted(made.grid);
-  }
-  if (dropped > 0)
-    report.notes.push_back(
-        join_text(dropped, " crumpled cells were left out, of ", made.cells.size()));
-}
-
-MeshingResult mesh_sheet(const TriMesh& surface, const medial::SurfaceSides& sides,
-                         const MeshingOptions& options, const Monitor& monitor) {
-  MeshingResult result;
-  medial::FacePair faces(surface, sides);
-  if (const auto trimmed = medial::trimmed_sheet(faces)) {
-    faces.update_rim(*trimmed);
-    result.report.notes.push_back(
-        join_text("border zones too thin or narrow to be filled were cut away: ", trimmed->area,
-                  " mm², the border moved by up to ", trimmed->depth, " mm"));
-  }
-  const SlideGuide guide(surface, sides, faces, options.rim_rounding);
-  Extrusion made = extrude_within(faces, guide, options, part_of(monitor, "medial grid", 0.0, 0.6));
-  bring_back_inverted(made, guide, result.report);
-  improve(made.grid, guide, options.improvement_rounds, part_of(monitor, "improve", 0.6, 1.0));
-  if (options.improvement_rounds > 0) raise_freely(made.grid, guide);
-  draw_back(made.grid, guide);
-  const Index dropped = drop_poor_elements(made.grid);
-  if (dropped > 0) {
-    result.report.notes.push_back(
-        join_text(dropped, " poor elements at the boundary were dropped"));
-  }
-  if (const double departure = largest_departure(made.grid, guide); departure > 1e-3) {
-    result.report.notes.push_back(
-        join_text("nodes left the surface by up to ", departure, " mm to make elements better"));
-  }
-  result.report.method = Method::medial;
-  result.report.sheetness = sides.sheetness;
-  result.report.layers = options.layers.value_or(1);
-  result.report.rim_rounding = guide.largest_rounding();
-  result.mesh = to_tet_mesh(made.grid);
-  result.report.quality = tet_quality(result.mesh.points, result.mesh.tets);
+MeshingResult solid_because(const std::string& why, const SheetLikeness& likeness,
+                            const TriMesh& surface, const MeshingOptions& options,
+                            const Monitor& monitor) {
+  MeshingResult result = mesh_solid(surface, options, monitor);
+  result.report.sheetness = likeness.sheetness;
+  result.report.notes.insert(result.report.notes.begin(),
+                             join_text("filled from a lattice, since ", why));
   return result;
 }
 
 }  // namespace
 
+SheetLikeness sheet_likeness(const TriMesh& surface) {
+  require_closed_manifold(surface, "surface to fill with tetrahedra");
+  return likeness_of(medial::split_sides(surface));
+}
+
 MeshingResult mesh_surface(const TriMesh& surface, const MeshingOptions& options,
                            const Monitor& monitor) {
   check(options);
   require_closed_manifold(surface, "surface to fill with tetrahedra");
+  if (options.method == Method::lattice) return mesh_solid(surface, options, monitor);
   const medial::SurfaceSides sides = medial::split_sides(surface);
-  if (sides.sheetness < kSheet || sides.relative_thickness > kThick) {
-    fail(ErrorCode::bad_mesh, "the body is no sheet: ", 100.0 * sides.sheetness,
-         " % of its surface faces another part of it, at ", sides.relative_thickness,
-         " times the width of a face");
+  const SheetLikeness likeness = likeness_of(sides);
+  const bool may_choose = options.method == Method::automatic;
+  if (!likeness.is_sheet()) {
+    if (!may_choose) fail(ErrorCode::bad_mesh, likeness.why_not);
+    return solid_because(likeness.why_not, likeness, surface, options, monitor);
   }
-  return mesh_sheet(surface, sides, options, monitor);
+  try {
+    return mesh_sheet(surface, sides, options, monitor);
+  } catch (const Error& error) {
+    if (!may_choose || error.code() == ErrorCode::cancelled) throw;
+    return solid_because(join_text("the medial grid failed: ", error.what()), likeness, surface,
+                         options, monitor);
+  }
 }
 
 }  // namespace coxa::meshing

@@ -53,6 +53,15 @@ FacetTag tag_of(const TetGrid& grid, const std::array<Index, 3>& facet) {
 
 }  // namespace
 
+Triangles boundary_of(const TetGrid& grid) {
+  const std::vector<Facet> facets = single_facets(grid.tets);
+  Triangles result(static_cast<Eigen::Index>(facets.size()), 3);
+  for (std::size_t f = 0; f < facets.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k)
+      result(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) = facets[f].outward[k];
+  return result;
+}
+
 TetMesh to_tet_mesh(const TetGrid& grid) {
   std::vector<Index> number(grid.x.size(), -1);
   for (const Tet& t : grid.tets) {

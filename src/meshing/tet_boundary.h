@@ -6,6 +6,9 @@
 
 namespace coxa::meshing {
 
+/// Facets of one element only, outward, by the grid's node numbers, in order of their corners.
+Triangles boundary_of(const TetGrid& grid);
+
 /// The result: nodes in use renumbered in order, boundary facets with their tags.
 ///
 /// First face -> bone_side, second face -> articular_side, facets that join both -> rim.

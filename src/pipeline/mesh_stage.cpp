@@ -15,6 +15,8 @@
 #include <coxa/pipeline/segment_stage.h>
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 namespace coxa::pipeline {
 namespace fs = std::filesystem;
@@ -94,16 +96,12 @@ TriMesh replacement(const TriMesh& surface, double edge, bool anew) {
   return even;
 }
 
-/// The surface filled as it is, or else with its triangles made even, or else made anew.
-meshing::MeshingResult filled(const TriMesh& surface, const meshing::MeshingOptions& options,
-                              const std::string& name, Record& record, const Monitor& monitor) {
-  std::string why;
-  try {
-    return meshing::mesh_surface(surface, options, monitor);
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::below_quality && error.code() != ErrorCode::bad_mesh) throw;
-    why = error.what();
-  }
+/// A sheet filled with its triangles made even, or else made anew; nullopt where neither helps.
+std::optional<meshing::MeshingResult> filled_otherwise(const TriMesh& surface,
+                                                       const meshing::MeshingOptions& options,
+                                                       const std::string& name,
+                                                       const std::string& why, Record& record,
+                                                       const Monitor& monitor) {
   for (const bool anew : {false, true}) {
     for (const double edge : kRemeshEdges) {
       try {
@@ -121,7 +119,32 @@ meshing::MeshingResult filled(const TriMesh& surface, const meshing::MeshingOpti
       }
     }
   }
-  fail(ErrorCode::below_quality, name, ": ", why);
+  return std::nullopt;
+}
+
+/// The surface filled as it is; a sheet that cannot be, with its triangles made even or made anew,
+/// or else like a solid body.
+meshing::MeshingResult filled(const TriMesh& surface, const meshing::MeshingOptions& options,
+                              const std::string& name, Record& record, const Monitor& monitor) {
+  meshing::MeshingOptions as_sheet = options;
+  if (options.method == meshing::Method::automatic && meshing::sheet_likeness(surface).is_sheet())
+    as_sheet.method = meshing::Method::medial;
+  std::string why;
+  try {
+    return meshing::mesh_surface(surface, as_sheet, monitor);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::below_quality && error.code() != ErrorCode::bad_mesh) throw;
+    why = error.what();
+  }
+  if (as_sheet.method == meshing::Method::medial) {
+    auto result = filled_otherwise(surface, as_sheet, name, why, record, monitor);
+    if (result) return std::move(*result);
+  }
+  if (options.method != meshing::Method::automatic) fail(ErrorCode::below_quality, name, ": ", why);
+  as_sheet.method = meshing::Method::lattice;
+  meshing::MeshingResult result = meshing::mesh_surface(surface, as_sheet, monitor);
+  result.report.notes.push_back("filled from a lattice, since the medial grid failed: " + why);
+  return result;
 }
 
 std::string method_name(meshing::Method method) {
@@ -138,7 +161,8 @@ std::string method_name(meshing::Method method) {
 
 void add_options(const meshing::MeshingOptions& options, Record& record) {
   record.options = {{"method", method_name(options.method)},
-                    {"max_tets", std::int64_t{options.max_tets}},
+                    {"max_tets", options.max_tets ? Value(std::int64_t{*options.max_tets})
+                                                  : Value(std::string("by method"))},
                     {"cell_per_thickness", options.cell_per_thickness},
                     {"rim_rounding_mm", options.rim_rounding},
                     {"nodes_per_element",

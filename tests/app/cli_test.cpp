@@ -53,13 +53,17 @@ TEST_F(CommandLine, LogsStepsAndTheWholeRecordOnlyWhenAskedTo) {
   }
   EXPECT_TRUE(coxa_run(mesh + " -v --json").says("{\"record\":{\"coxa_version\""));
 }
-TEST_F(CommandLine, RefusesASolidBodyAndSaysWhy) {
+TEST_F(CommandLine, FillsASolidBodyAndSaysHowUnlessASheetIsDemanded) {
   io::write_surface(folder_ / "ball.ply", test::icosphere(3, 8.0));
-  const Outcome outcome =
-      coxa_run("mesh --quiet --surface " + path("ball.ply") + " --out " + path("ball.vtu"));
-  EXPECT_EQ(outcome.exit_code, 5);
-  EXPECT_TRUE(outcome.says("no sheet")) << outcome.output;
+  const std::string mesh = "mesh --surface " + path("ball.ply") + " --out " + path("ball.vtu");
+  const Outcome refused = coxa_run(mesh + " --quiet --method medial");
+  EXPECT_EQ(refused.exit_code, 5);
+  EXPECT_TRUE(refused.says("no sheet")) << refused.output;
   EXPECT_FALSE(fs::exists(folder_ / "ball.vtu"));
+  const Outcome filled = coxa_run(mesh + " --tets 5000");
+  EXPECT_EQ(filled.exit_code, 0) << filled.output;
+  EXPECT_TRUE(filled.says("lattice")) << filled.output;
+  EXPECT_NE(io::read_bytes(folder_ / "ball.json").find("no sheet"), std::string::npos);
 }
 TEST_F(CommandLine, MeasuresAHipAndItsRangeOfMotion) {
   const test::SmallRun run("cli_measure");

@@ -26,7 +26,9 @@ struct MeshingOptions {
   Method method = Method::automatic;
   /// 1 to 8 layers through a sheet, exactly; one, freely improved, if not set
   std::optional<int> layers = std::nullopt;
-  int max_tets = 20000;             ///< > 100; the cells are made larger until it holds
+  /// > 100; the cells are made larger until it holds. If not set: 20 000 for a sheet, 45 000 for
+  /// each layer where two or more are asked for with four-node elements, 200 000 for a lattice.
+  std::optional<int> max_tets = std::nullopt;
   double cell_per_thickness = 1.0;  ///< edge length over layer thickness, > 0
   double rim_rounding = 0.2;        ///< mm, in [0, 0.25]: how far a knife-edge rim may move inwards
   ElementOrder order = ElementOrder::four_node;
@@ -49,7 +51,21 @@ struct MeshingResult {
   MeshingReport report;
 };
 
+/// Whether a closed surface bounds a thin body with two faces, which the medial method is for;
+/// otherwise says why not.
+struct SheetLikeness {
+  double sheetness = 0.0;           ///< share of the surface that faces its other side, in [0, 1]
+  double relative_thickness = 0.0;  ///< over the width of a face
+  bool is_sheet() const { return why_not.empty(); }
+  std::string why_not;  ///< empty for a sheet
+};
+/// @throws Error bad_mesh if the surface is open or not manifold
+SheetLikeness sheet_likeness(const TriMesh& surface);
+
 /// Fills a closed surface with tetrahedra.
+///
+/// `Method::automatic` takes the medial grid for a sheet and the lattice for any other body, and
+/// also where the medial grid fails; the notes say why.
 ///
 /// @param surface  closed, manifold, oriented outward, not self-intersecting, mm
 /// @throws Error   bad_mesh if the surface cannot be filled, naming the place; bad_input for an

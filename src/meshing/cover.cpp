@@ -1,0 +1,150 @@
+#include "cover.h"
+
+#include "element_shape.h"
+#include "grid_topology.h"
+#include "tet_boundary.h"
+
+#include <coxa/core/parallel.h>
+#include <coxa/geom/closest_point.h>
+#include <coxa/geom/triangle_tree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace coxa::meshing {
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+struct Place {
+  Vec3 p = Vec3::Zero();
+  Facet facet{};  // of the boundary, nearest
+  double distance = 0.0;
+};
+
+// vertices and edge midpoints of the surface, and where the boundary is nearest to them
+std::vector<Place> places_of(const TetGrid& grid, const TriMesh& surface) {
+  std::vector<Place> places;
+  for (Index v = 0; v < surface.n_vertices(); ++v) places.push_back({surface.points.row(v), {}, 0});
+  for (Index t = 0; t < surface.n_triangles(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Index a = surface.triangles(t, k), b = surface.triangles(t, (k + 1) % 3);
+      if (a < b)
+        places.push_back(
+            {0.5 * (surface.points.row(a) + surface.points.row(b)).transpose(), {}, 0});
+    }
+  Points points(static_cast<Index>(grid.x.size()), 3);
+  for (std::size_t v = 0; v < grid.x.size(); ++v) points.row(static_cast<Index>(v)) = grid.x[v];
+  const Triangles facets = boundary_of(grid);
+  const TriangleTree tree(points, facets);
+  parallel_for(static_cast<std::int64_t>(places.size()), [&](Index i) {
+    Place& place = places[at(i)];
+    const NearestPoint nearest = tree.nearest(place.p);
+    for (int k = 0; k < 3; ++k) place.facet[at(k)] = facets(nearest.triangle, k);
+    place.distance = std::sqrt(nearest.squared_distance);
+  });
+  return places;
+}
+
+NodeKind kept(NodeKind kind) {
+  if (on_first_face(kind)) return NodeKind::first_corner;
+  return on_second_face(kind) ? NodeKind::second_corner : NodeKind::rim_corner;
+}
+
+bool may_go(NodeKind kind) {
+  return !is_fixed(kind) && kind != NodeKind::inside && kind != NodeKind::rim_band;
+}
+
+class Cover {
+ public:
+  Cover(TetGrid& grid, std::vector<Place> places)
+      : grid_(grid), places_(std::move(places)), near_(grid.x.size()) {
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      for (const Index v : places_[i].facet) near_[at(v)].push_back(static_cast<Index>(i));
+  }
+
+  // the corner of the nearest facet that can go there at least cost goes
+  bool draw_to(const Place& place, double worst) {
+    std::vector<std::pair<double, Index>> order;
+    for (const Index v : place.facet) order.emplace_back((grid_.x[at(v)] - place.p).norm(), v);
+    std::sort(order.begin(), order.end());
+    for (const auto& [distance, v] : order)
+      if (may_go(grid_.kinds[at(v)]) && try_node(v, place.p, worst)) {
+        grid_.kinds[at(v)] = kept(grid_.kinds[at(v)]);
+        grid_.reach[at(v)] = 0.0;
+        return true;
+      }
+    return false;
+  }
+
+ private:
+  bool try_node(Index v, const Vec3& target, double worst) {
+    const Vec3 old = grid_.x[at(v)];
+    const double before = farthest_near(v), allowed = std::max(worst, energy_around(v));
+    for (const double share : {1.0, 0.75, 0.5}) {
+      grid_.x[at(v)] = old + share * (target - old);
+      if (energy_around(v) <= allowed && farthest_near(v) < 0.8 * before) return true;
+    }
+    grid_.x[at(v)] = old;
+    return false;
+  }
+
+  double energy_around(Index v) const {
+    double worst = 0.0;
+    for (const Index t : grid_.around[at(v)]) {
+      const Tet& n = grid_.tets[at(t)];
+      worst = std::max(worst, shape_energy(grid_.x[at(n[0])], grid_.x[at(n[1])], grid_.x[at(n[2])],
+                                           grid_.x[at(n[3])]));
+    }
+    return worst;
+  }
+
+  // of the places near the facets around v
+  double farthest_near(Index v) const {
+    std::vector<Facet> facets;
+    for (const Index t : grid_.around[at(v)])
+      for (std::size_t k = 0; k < 4; ++k) {
+        if (grid_.tets[at(t)][k] == v) continue;
+        const Facet f = facet_opposite(grid_.tets[at(t)], k);
+        if (on_boundary(grid_, f)) facets.push_back(f);
+      }
+    double farthest = 0.0;
+    for (const Index i : near_[at(v)]) {
+      double nearest = kInfinity;
+      for (const auto& [a, b, c] : facets)
+        nearest = std::min(nearest, closest_point_on_triangle(places_[at(i)].p, grid_.x[at(a)],
+                                                              grid_.x[at(b)], grid_.x[at(c)])
+                                        .squared_distance);
+      farthest = std::max(farthest, nearest);
+    }
+    return std::sqrt(farthest);
+  }
+
+  TetGrid& grid_;
+  std::vector<Place> places_;
+  std::vector<std::vector<Index>> near_;  // places by the corners of their nearest facets
+};
+
+}  // namespace
+
+Index cover_far_places(TetGrid& grid, const TriMesh& surface, const CoverOptions& options) {
+  std::vector<Place> places = places_of(grid, surface);
+  std::vector<Place> far;
+  for (const Place& place : places)
+    if (place.distance > options.limit) far.push_back(place);
+  std::stable_sort(far.begin(), far.end(),
+                   [](const Place& a, const Place& b) { return a.distance > b.distance; });
+  Cover cover(grid, std::move(places));
+  Index drawn = 0;
+  for (const Place& place : far) drawn += cover.draw_to(place, options.worst);
+  return drawn;
+}
+
+double farthest_place(const TetGrid& grid, const TriMesh& surface) {
+  double farthest = 0.0;
+  for (const Place& place : places_of(grid, surface)) farthest = std::max(farthest, place.distance);
+  return farthest;
+}
+
+}  // namespace coxa::meshing

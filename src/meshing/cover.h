@@ -1,0 +1,24 @@
+#pragma once
+
+#include "slide_guide.h"
+#include "tet_grid.h"
+
+#include <coxa/mesh/tri_mesh.h>
+
+namespace coxa::meshing {
+
+struct CoverOptions {
+  double limit = 0.1;  ///< mm, >= 0: places of the surface farther than this from the boundary
+  double worst = 2.5;  ///< shape energy, >= 1: allowed for elements around a node that is moved,
+                       ///< or as much as there was
+};
+
+/// Draws boundary nodes to corners, ridges and tips of the surface that the boundary cuts off, and
+/// keeps them there, where that brings all of the surface nearby nearer to the boundary.
+/// @returns how many were drawn
+Index cover_far_places(TetGrid& grid, const TriMesh& surface, const CoverOptions& options);
+
+/// Largest distance of vertices and edge midpoints of the surface to the boundary of the grid, mm.
+double farthest_place(const TetGrid& grid, const TriMesh& surface);
+
+}  // namespace coxa::meshing

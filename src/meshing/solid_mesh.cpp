@@ -1,0 +1,127 @@
+#include "solid_mesh.h"
+
+#include "cover.h"
+#include "element_shape.h"
+#include "flips.h"
+#include "lattice.h"
+#include "mending.h"
+#include "node_freedom.h"
+#include "node_smoothing.h"
+#include "solid_guide.h"
+#include "tet_boundary.h"
+#include "worst_elements.h"
+
+#include <coxa/core/error.h>
+#include <coxa/mesh/measures.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace coxa::meshing {
+namespace {
+
+constexpr double kFlatness = 0.15;     // mm, wanted; more where that asks for too many elements
+constexpr double kShapeShare = 0.003;  // of the diagonal of the bounding box: flatness at most
+constexpr double kSmallest = 2.0;      // times the flatness: edge of the smallest cubes
+constexpr double kLargest = 0.08;      // of the diagonal: edge of the largest cubes at the surface
+constexpr double kCoarser = 1.3;       // growth of the flatness when elements are too many
+constexpr int kSizeTries = 24;
+constexpr int kMostTets = 200000;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+// lattice within the surface of as many elements as allowed
+TetGrid fill_within(const TriMesh& surface, const TriangleTree& tree, int max_tets,
+                    double& flatness, const Monitor& monitor) {
+  const double diagonal = bounds(surface.points).diagonal();
+  flatness = std::min(kFlatness, kShapeShare * diagonal);
+  for (int attempt = 0; attempt < kSizeTries; ++attempt) {
+    monitor.check_cancelled();
+    const Octree octree(surface, {.flatness = flatness,
+                                  .smallest = kSmallest * flatness,
+                                  .largest = std::max(kLargest * diagonal, 4.0 * flatness)});
+    TetGrid grid = stuffed(make_lattice(octree), tree);
+    const double filled = static_cast<double>(grid.tets.size()) / max_tets;
+    if (filled > 0.0 && filled <= 1.0) return grid;
+    // chord errors go with the square of the edge, and the elements with the area over that square
+    flatness *= filled > 0.0 ? std::max(kCoarser, std::pow(filled, 0.9)) : 0.5;
+  }
+  fail(ErrorCode::below_quality, "no mesh of at most ", max_tets,
+       " tetrahedra was found; allow more of them");
+}
+
+double worst_energy(const TetGrid& grid, Index v) {
+  double worst = 0.0;
+  for (const Index t : grid.around[at(v)]) {
+    const Tet& n = grid.tets[at(t)];
+    worst = std::max(worst, shape_energy(grid.x[at(n[0])], grid.x[at(n[1])], grid.x[at(n[2])],
+                                         grid.x[at(n[3])]));
+  }
+  return worst;
+}
+
+// boundary nodes go to the surface, as far as the elements allow it
+void draw_to_surface(TetGrid& grid, const SlideGuide& guide) {
+  constexpr double kWorst = 6.0;  // shape energy allowed just then
+  for (std::size_t v = 0; v < grid.x.size(); ++v) {
+    if (grid.kinds[v] == NodeKind::inside || grid.around[v].empty()) continue;
+    const Vec3 old = grid.x[v], home = guide.place(grid.kinds[v], old);
+    const double allowed = std::max(kWorst, worst_energy(grid, static_cast<Index>(v)));
+    for (const double share : {1.0, 0.8, 0.6, 0.4, 0.2, 0.0}) {
+      grid.x[v] = old + share * (home - old);
+      grid.reach[v] = share < 1.0 ? (1.0 - share) * (home - old).norm() : 0.0;
+      if (worst_energy(grid, static_cast<Index>(v)) <= allowed) break;
+    }
+  }
+}
+
+void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface, int rounds,
+             const Monitor& monitor) {
+  constexpr int kMeanRounds = 4;  // first the average, then the worst
+  for (int k = 0; k < rounds; ++k) {
+    monitor.check_cancelled();
+    monitor.progress("improve", static_cast<double>(k) / rounds);
+    update_positions(grid, guide, k < kMeanRounds ? 1.0 : 3.0);
+    draw_to_surface(grid, guide);
+    if (k > 0) flip_poor(grid, guide, {.below = 0.5});
+  }
+  constexpr int kCoverRounds = 3;
+  for (int k = 0; k < kCoverRounds && cover_far_places(grid, surface, {}) > 0; ++k) {
+    flip_poor(grid, guide, {.below = 0.5});
+    update_positions(grid, guide, 3.0);
+  }
+  for (int k = 0; k < rounds && raise_worst(grid, guide) > 0; ++k) {
+    monitor.check_cancelled();
+    flip_poor(grid, guide, {.below = 0.35});
+  }
+}
+
+}  // namespace
+
+MeshingResult mesh_solid(const TriMesh& surface, const MeshingOptions& options,
+                         const Monitor& monitor) {
+  MeshingResult result;
+  const TriangleTree tree(surface.points, surface.triangles);
+  const SolidGuide guide(tree);
+  double flatness = 0.0;
+  TetGrid grid = fill_within(surface, tree, options.max_tets.value_or(kMostTets), flatness,
+                             part_of(monitor, "lattice", 0.0, 0.4));
+  draw_to_surface(grid, guide);
+  improve(grid, guide, surface, options.improvement_rounds, part_of(monitor, "improve", 0.4, 1.0));
+  if (options.improvement_rounds > 0) raise_freely(grid, guide);
+  draw_back(grid, guide);
+  if (const Index dropped = drop_poor_elements(grid); dropped > 0)
+    result.report.notes.push_back(
+        join_text(dropped, " poor elements at the boundary were dropped"));
+  if (flatness > kFlatness)
+    result.report.notes.push_back(
+        join_text("the elements allowed follow the surface to within about ", flatness,
+                  " mm only, instead of ", kFlatness, " mm"));
+  result.report.method = Method::lattice;
+  result.mesh = to_tet_mesh(grid);
+  std::fill(result.mesh.facet_tags.begin(), result.mesh.facet_tags.end(), FacetTag::untagged);
+  result.report.quality = tet_quality(result.mesh.points, result.mesh.tets);
+  return result;
+}
+
+}  // namespace coxa::meshing
