@@ -12,21 +12,13 @@
 namespace coxa::motion {
 namespace {
 
-std::vector<Index> seen_markers(const ThighObservations& thigh, Index frame) {
-  std::vector<Index> markers;
-  for (Index m = 0; m < thigh.n_markers(); ++m) {
-    if (thigh.seen(frame, m) > 0) markers.push_back(m);
-  }
-  return markers;
-}
-
 PoseEstimate empty_estimate(const ThighObservations& thigh) {
   const auto n = static_cast<std::size_t>(thigh.n_frames());
   PoseEstimate estimate;
   estimate.R_PF.assign(n, Mat3::Identity());
   estimate.head.assign(n, Vec3::Zero());
   estimate.valid.assign(n, false);
-  estimate.covariance = MatX::Identity(thigh.n_markers(), thigh.n_markers());
+  estimate.covariance = same_along_all_axes(MatX::Identity(thigh.n_markers(), thigh.n_markers()));
   return estimate;
 }
 
@@ -53,6 +45,14 @@ PoseEstimate per_frame(const ThighObservations& thigh, std::size_t needed, const
 }
 
 }  // namespace
+
+std::vector<Index> seen_markers(const ThighObservations& thigh, Index frame) {
+  std::vector<Index> markers;
+  for (Index m = 0; m < thigh.n_markers(); ++m) {
+    if (thigh.seen(frame, m) > 0) markers.push_back(m);
+  }
+  return markers;
+}
 
 Mat3 nearest_rotation(const Mat3& M) {
   const Eigen::JacobiSVD<Mat3> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -96,7 +96,7 @@ PoseEstimate estimate_ball_joint(const ThighObservations& thigh, const MatX& cov
           R = nearest_rotation(y.transpose() * part.llt().solve(MatX(x)));
         }
       });
-  estimate.covariance = covariance;
+  estimate.covariance = same_along_all_axes(covariance);
   return estimate;
 }
 

@@ -77,10 +77,7 @@ PoseEstimate estimate_point_cluster(const ThighObservations& thigh) {
   parallel_for(thigh.n_frames(), [&](Index frame) {
     const auto f = static_cast<std::size_t>(frame);
     if (!estimate.valid[f]) return;
-    std::vector<Index> markers;
-    for (Index m = 0; m < thigh.n_markers(); ++m) {
-      if (thigh.seen(frame, m) > 0) markers.push_back(m);
-    }
+    const std::vector<Index> markers = seen_markers(thigh, frame);
     const Points x = thigh.x(markers, Eigen::all), y = thigh.y[f](markers, Eigen::all);
     const Axes reference = principal_axes(x, VecX::Ones(x.rows()));
     const Axes now = principal_axes(y, adjusted_masses(y, reference.moments));

@@ -3,7 +3,6 @@
 #include <coxa/core/parallel.h>
 #include <coxa/geom/fits.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -11,20 +10,15 @@
 namespace coxa::motion {
 namespace {
 
-// half-width of a 95 % interval in standard deviations: Student's t for 7 degrees of freedom,
-// because a trial holds two or three independent artefact patterns of three axes each, however many
-// frames it has
-constexpr double kHalfWidth = 2.36;
+// half-width of a 95 % interval in standard deviations
+constexpr double kHalfWidth = 2.0;
+// Of a rotation that all markers share: what it is about the long axis for movements about any
+// axis, and about the other two axes, as a part of `common_rotation_share`.
+constexpr double kLongAxisPart = 0.3, kOtherAxesPart = 0.2;
 
 bool shift_is_free(PoseMethod method) {
   return method == PoseMethod::rigid || method == PoseMethod::paper ||
          method == PoseMethod::point_cluster;
-}
-
-Mat3 cross_matrix(const Vec3& v) {
-  Mat3 S;
-  S << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return S;
 }
 
 // derivative of (flexion, adduction, internal rotation) by a small rotation of the femur about its
@@ -43,37 +37,50 @@ Mat3 angle_derivative(const Mat3& R_PF, Side side) {
   return derivative;
 }
 
-// how errors of the marker positions become a rotation error (femur axes): delta = sum_m gain_m e_m
-struct Gains {
-  std::vector<Mat3> of_marker;
-  Mat3 of_shift = Mat3::Zero();  // of a shift common to all markers
-};
-
-Gains rotation_gains(const Points& x, const MatX& weights) {
-  const Eigen::Index K = x.rows();
-  const Points centre_weighted = weights * x;
-  Mat3 information = Mat3::Zero();
-  for (Eigen::Index m = 0; m < K; ++m) {
-    for (Eigen::Index l = 0; l < K; ++l) {
-      information += weights(m, l) * cross_matrix(x.row(m)).transpose() * cross_matrix(x.row(l));
-    }
+// how errors of the markers become errors of the rotation; a free cluster translation removes the
+// weighted mean
+WeightedRotation fitted_rotation(const ThighObservations& thigh, const PoseEstimate& estimate,
+                                 PoseMethod method) {
+  const WeightedRotation pinned(thigh.x, estimate.covariance);
+  if (!shift_is_free(method)) return pinned;
+  AxisCovariance weights = pinned.weights();
+  for (MatX& W : weights) {
+    const VecX row_sums = W.rowwise().sum();
+    W -= row_sums * row_sums.transpose() / row_sums.sum();
   }
-  const Mat3 inverse = information.inverse();
-  Gains gains;
-  for (Eigen::Index m = 0; m < K; ++m) {
-    gains.of_marker.push_back(inverse * cross_matrix(centre_weighted.row(m)));
-    gains.of_shift += gains.of_marker.back();
-  }
-  return gains;
+  return WeightedRotation::from_weights(thigh.x, weights);
 }
 
-// weights of the fit: per-axis precision; free cluster translation removes the weighted mean
-MatX fit_weights(const MatX& covariance, PoseMethod method) {
-  const Eigen::Index K = covariance.rows();
-  const MatX W = covariance.llt().solve(MatX::Identity(K, K));
-  if (!shift_is_free(method)) return W;
-  const VecX row_sums = W.rowwise().sum();
-  return W - row_sums * row_sums.transpose() / row_sums.sum();
+// turns away from the calibration pose in femur axes, and how much artefact each brings compared to
+// the trial's mean: half of it grows with the square of the turn
+struct Turns {
+  std::vector<Vec3> away;
+  VecX activity;
+};
+
+Turns turns_from(const std::vector<Mat3>& R, Index calibration_frame) {
+  const auto n = static_cast<Index>(R.size());
+  const Mat3 R_0 = R[static_cast<std::size_t>(calibration_frame)];
+  Turns turns{{}, VecX(n)};
+  for (Index frame = 0; frame < n; ++frame) {
+    turns.away.push_back(rotation_vector(R_0.transpose() * R[static_cast<std::size_t>(frame)]));
+    turns.activity[frame] = turns.away.back().squaredNorm();
+  }
+  const double mean = turns.activity.mean();
+  if (mean > 0) {
+    turns.activity = 0.5 + 0.5 * turns.activity.array() / mean;
+  } else {
+    turns.activity.setOnes();
+  }
+  return turns;
+}
+
+// rad², of a rotation that all thigh markers share, which no estimate from them can see
+Mat3 common_rotation(const Vec3& away, double share) {
+  const double all = std::pow(share, 2) * away.squaredNorm();
+  Vec3 variance = Vec3::Constant(std::pow(kOtherAxesPart, 2) * all);
+  variance.y() = std::pow(share * away.y(), 2) + std::pow(kLongAxisPart, 2) * all;
+  return variance.asDiagonal();
 }
 
 // rad, how far a bridged frame may be off: half of the turn across its gap, in its middle; at the
@@ -109,55 +116,46 @@ VecX bridge_deviation(const std::vector<Mat3>& R, const std::vector<bool>& solve
 }  // namespace
 
 std::vector<HipAngles> pose_intervals(const HipRecording& recording, const HipModel& model,
-                                      const PoseEstimate& estimate, const TrackOptions& options) {
+                                      const PoseEstimate& estimate, const ArtefactModel& artefact,
+                                      const std::optional<Mat3>& registration,
+                                      const TrackOptions& options) {
   const ThighObservations& thigh = recording.thigh;
-  const Index K = thigh.n_markers();
-  const Gains gains = rotation_gains(thigh.x, fit_weights(estimate.covariance, options.method));
+  const WeightedRotation fit = fitted_rotation(thigh, estimate, options.method);
+  const Mat3 of_artefact = fit.propagated(artefact.covariance());
+  const Mat3 of_shift = fit.shift_gain();
+  const Index calibration_frame = model.calibration_frame.value_or(0);
+  const Mat3 R_0 = estimate.R_PF[static_cast<std::size_t>(calibration_frame)];
 
-  // variance of each marker's residuals over the trial
-  VecX variance = VecX::Zero(K), count = VecX::Zero(K);
-  for (Index frame = 0; frame < thigh.n_frames(); ++frame) {
-    const auto f = static_cast<std::size_t>(frame);
-    const Points r = residuals_of(thigh, frame, estimate.R_PF[f], estimate.head[f]);
-    for (Index m = 0; m < K; ++m) {
-      if (thigh.seen(frame, m) == 0) continue;
-      variance[m] += r.row(m).squaredNorm() / 3.0;
-      count[m] += 1.0;
-    }
+  // what is the same in every frame
+  double marker = std::pow(options.measurement_sd, 2);
+  double shift = std::pow(options.joint_translation_sd, 2);
+  if (!registration) {
+    marker += std::pow(model.marker_sd, 2);
+    shift += std::pow(model.pelvis_centre_sd, 2) + std::pow(model.femur_centre_sd, 2);
   }
-  const double floor = options.measurement_sd * options.measurement_sd;
-  variance = (variance.array() / count.array().max(1.0)).max(floor);
-  Mat3 artefact = Mat3::Zero(), registration = Mat3::Zero();
-  for (Index m = 0; m < K; ++m) {
-    const Mat3 square = gains.of_marker[static_cast<std::size_t>(m)] *
-                        gains.of_marker[static_cast<std::size_t>(m)].transpose();
-    artefact += variance[m] * square;
-    registration += model.marker_sd * model.marker_sd * square;
-  }
-  const double centre = std::pow(model.pelvis_centre_sd, 2) + std::pow(model.femur_centre_sd, 2) +
-                        std::pow(options.joint_translation_sd, 2);
-  // a shift that all markers share turns a pinned thigh
-  const double shared = shift_is_free(options.method)
-                            ? 0.0
-                            : estimate_shared_shift(thigh, options.measurement_sd).shared;
-  artefact += shared * gains.of_shift * gains.of_shift.transpose();
-  registration += centre * gains.of_shift * gains.of_shift.transpose();
+  const Index K = thigh.n_markers();
+  const Mat3 constant = registration.value_or(Mat3::Zero()) +
+                        fit.propagated(same_along_all_axes(marker * MatX::Identity(K, K))) +
+                        shift * of_shift * of_shift.transpose();
   const Mat3 pelvis =
       std::pow(recording.pelvis_residual_sd, 2) * recording.pelvis_information.inverse();
 
-  const Mat3 R_calibration =
-      estimate.R_PF[static_cast<std::size_t>(model.calibration_frame.value_or(0))];
   std::vector<bool> solved = recording.pelvis_seen;
   for (std::size_t f = 0; f < solved.size(); ++f) solved[f] = solved[f] && estimate.valid[f];
   const VecX bridged = bridge_deviation(estimate.R_PF, solved);
+  const Turns turns = turns_from(estimate.R_PF, calibration_frame);
   std::vector<HipAngles> intervals(static_cast<std::size_t>(thigh.n_frames()));
   parallel_for(thigh.n_frames(), [&](Index frame) {
     const auto f = static_cast<std::size_t>(frame);
     const Mat3& R = estimate.R_PF[f];
-    const Vec3 away = rotation_vector(R_calibration.transpose() * R);
-    Mat3 covariance = artefact + registration + R.transpose() * pelvis * R;
-    covariance += std::pow(bridged[frame], 2) * Mat3::Identity();
-    covariance(1, 1) += std::pow(options.common_rotation_share * away.y(), 2);
+    Mat3 covariance = constant + turns.activity[frame] * of_artefact;
+    covariance += R.transpose() * pelvis * R + std::pow(bridged[frame], 2) * Mat3::Identity();
+    covariance += common_rotation(turns.away[f], options.common_rotation_share);
+    if (registration) {
+      // the pelvis' joint centre was put right in the calibration pose and turns away with it
+      const Mat3 turned = model.pelvis_centre_sd * of_shift * (R - R_0).transpose();
+      covariance += turned * turned.transpose();
+    }
     const Mat3 derivative = angle_derivative(R, model.side);
     const Vec3 width =
         kHalfWidth * (derivative * covariance * derivative.transpose()).diagonal().cwiseSqrt();

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "artefact_model.h"
 #include "hip_recording.h"
 #include "pose_intervals.h"
-#include "thigh_observations.h"
 
 namespace coxa::motion {
 namespace {
@@ -22,7 +22,45 @@ void check_options(const TrackOptions& options) {
           options.common_rotation_share);
 }
 
-PoseEstimate estimate_poses(const ThighObservations& thigh, const TrackOptions& options) {
+// errors of the model and the cameras that the markers carry beside artefact
+struct ErrorBudget {
+  KnownErrors known;
+  std::optional<Mat3> registration;  // rad², where the calibration frame put the positions right
+};
+
+// mean square of what is left of a pelvis centre's error after the calibration frame took it up
+double turned_centre_variance(const ThighObservations& thigh, Index calibration_frame, double sd) {
+  const std::vector<Mat3> R = estimate_rigid(thigh).R_PF;
+  double sum = 0.0;
+  for (const Mat3& R_k : R)
+    sum += (R_k - R[static_cast<std::size_t>(calibration_frame)]).squaredNorm() / 3.0;
+  return sd * sd * sum / static_cast<double>(R.size());
+}
+
+// `coxa` puts the marker positions right by the frame they were measured in; the others take them
+// as they are
+ErrorBudget update_registration(ThighObservations& thigh, const HipModel& model,
+                                const TrackOptions& options) {
+  const double centres = std::pow(model.pelvis_centre_sd, 2) + std::pow(model.femur_centre_sd, 2);
+  const KnownErrors registration{.marker = std::hypot(model.marker_sd, options.measurement_sd),
+                                 .shift = std::sqrt(centres)};
+  ErrorBudget budget{{.marker = registration.marker,
+                      .shift = std::hypot(options.joint_translation_sd, registration.shift)},
+                     {}};
+  if (options.method != PoseMethod::coxa || !model.calibration_frame || model.marker_sd == 0)
+    return budget;
+  const Index frame = *model.calibration_frame;
+  const auto registered = registered_positions(thigh, frame, registration);
+  if (!registered) return budget;
+  thigh.x = registered->x;
+  const double turned = turned_centre_variance(thigh, frame, model.pelvis_centre_sd);
+  return {{.marker = options.measurement_sd,
+           .shift = std::hypot(options.joint_translation_sd, std::sqrt(turned))},
+          registered->covariance};
+}
+
+PoseEstimate estimate_poses(const ThighObservations& thigh, const ArtefactModel& artefact,
+                            const KnownErrors& known, const TrackOptions& options) {
   const Index K = thigh.n_markers();
   switch (options.method) {
     case PoseMethod::paper:
@@ -36,7 +74,7 @@ PoseEstimate estimate_poses(const ThighObservations& thigh, const TrackOptions& 
     case PoseMethod::ball_joint_ml:
       return estimate_ball_joint_ml(thigh, options.measurement_sd);
     case PoseMethod::coxa:
-      return estimate_coxa(thigh, options.measurement_sd);
+      return estimate_coxa(thigh, artefact, known);
   }
   COXA_ASSERT(false);
   return {};
@@ -117,11 +155,12 @@ TrackResult track_in_detail(const MarkerData& markers, const HipModel& model,
   TrackResult result;
   HipMotion& motion = result.motion;
   motion.warnings = markers.warnings;
-  const HipRecording recording = make_recording(markers, model, motion.warnings);
+  HipRecording recording = make_recording(markers, model, motion.warnings);
   monitor.progress("track", 0.2);
 
-  PoseEstimate estimate = estimate_poses(recording.thigh, options);
-  if (!estimate.note.empty()) motion.warnings.push_back(estimate.note);
+  const ErrorBudget errors = update_registration(recording.thigh, model, options);
+  const ArtefactModel artefact = estimate_artefact(recording.thigh, errors.known);
+  PoseEstimate estimate = estimate_poses(recording.thigh, artefact, errors.known, options);
   update_unsolved_frames(estimate, motion.warnings);
   result.report = {.converged = estimate.converged,
                    .iterations = estimate.iterations,
@@ -131,7 +170,8 @@ TrackResult track_in_detail(const MarkerData& markers, const HipModel& model,
   monitor.check_cancelled();
 
   motion.method = name(options.method);
-  motion.interval = pose_intervals(recording, model, estimate, options);
+  motion.interval =
+      pose_intervals(recording, model, estimate, artefact, errors.registration, options);
   motion.head_lab.resize(markers.n_frames(), 3);
   for (Index frame = 0; frame < markers.n_frames(); ++frame) {
     const auto f = static_cast<std::size_t>(frame);
