@@ -6,18 +6,24 @@
 namespace coxa::collide {
 namespace {
 
-/// Adds to the entry of a particle; a constraint has few, so looking through them is quickest.
-void add_entry(Index particle, const Vec3& vector, std::vector<std::pair<Index, Vec3>>& entries) {
-  for (auto& [known, sum] : entries) {
-    if (known != particle) continue;
-    sum += vector;
-    return;
+using Entries = std::vector<std::pair<Index, Vec3>>;
+
+/// Adds to the entry of a particle, of which a constraint has one each.
+void add_entry(Index particle, const Vec3& vector, Entries& entries) {
+  // where each particle's entry was, last time one was made; a wrong place tells by its particle
+  thread_local std::vector<std::size_t> place;
+  const auto p = static_cast<std::size_t>(particle);
+  if (place.size() <= p) place.resize(2 * p + 1, 0);
+  if (place[p] < entries.size() && entries[place[p]].first == particle) {
+    entries[place[p]].second += vector;
+  } else {
+    place[p] = entries.size();
+    entries.emplace_back(particle, vector);
   }
-  entries.emplace_back(particle, vector);
 }
 
 void append_vertex(const ParticleSurface& surface, Index vertex, const Vec3& slope,
-                   std::vector<std::pair<Index, Vec3>>& entries) {
+                   Entries& entries) {
   const auto first = static_cast<std::size_t>(surface.row_start[static_cast<std::size_t>(vertex)]);
   const auto last =
       static_cast<std::size_t>(surface.row_start[static_cast<std::size_t>(vertex) + 1]);
@@ -81,7 +87,8 @@ void SurfaceContact::make_pointwise_constraints() {
   }
 }
 
-void SurfaceContact::make_nodal_constraints() {
+/// @param wanted  per vertex whether it gets a constraint; empty: all do
+void SurfaceContact::make_nodal_constraints(const std::vector<char>& wanted) {
   // pairs around each vertex, with their shares of its area, ascending
   const auto n = multiplier_.size();
   std::vector<std::size_t> start(n + 1, 0);
@@ -90,8 +97,9 @@ void SurfaceContact::make_nodal_constraints() {
       const ContactSample& sample = samples_[static_cast<std::size_t>(pairs_[p].sample)];
       for (int k = 0; k < 3; ++k) {
         const double share = sample.barycentric[k] * sample.area;
-        if (share == 0.0) continue;
-        take(static_cast<std::size_t>(slave_.triangles(sample.triangle, k)), p, share);
+        const auto v = static_cast<std::size_t>(slave_.triangles(sample.triangle, k));
+        if (share == 0.0 || (!wanted.empty() && !wanted[v])) continue;
+        take(v, p, share);
       }
     }
   };

@@ -1,5 +1,6 @@
 #include "pair_search.h"
 
+#include <coxa/geom/closest_point.h>
 #include <coxa/mesh/vertex_normals.h>
 
 #include <Eigen/Geometry>
@@ -78,7 +79,7 @@ std::optional<Vec3> line_hit(const OtherSurface& other, Index triangle, const Ve
 
 std::optional<FacedPoint> along_smooth_normal(const OtherSurface& other, const Vec3& point,
                                               const NearestPoint& nearest) {
-  FacedPoint faced{nearest.triangle, nearest.barycentric, Vec3::Zero()};
+  FacedPoint faced{nearest.triangle, nearest.triangle, nearest.barycentric, Vec3::Zero()};
   // fixed point of "the normal where the line along the normal arrives"; contracts as gap over
   // radius
   for (int iteration = 0; iteration < 3; ++iteration) {
@@ -90,14 +91,26 @@ std::optional<FacedPoint> along_smooth_normal(const OtherSurface& other, const V
   return faced;
 }
 
+/// How far the nearest point can be: no farther than that of the triangle that was nearest before.
+double search_limit(const OtherSurface& other, const Vec3& point, Index hint,
+                    const ContactOptions& options) {
+  if (hint < 0) return options.search_distance;
+  const double squared = closest_point_on_triangle(point, corner(other, hint, 0),
+                                                   corner(other, hint, 1), corner(other, hint, 2))
+                             .squared_distance;
+  // a little farther, because the search rounds
+  return std::min(options.search_distance, std::sqrt(squared) * (1.0 + 1e-9) + kTouching);
+}
+
 }  // namespace
 
 std::optional<FacedPoint> find_faced_point(const OtherSurface& other, const Vec3& point,
-                                           const Vec3& normal, const ContactOptions& options) {
-  const auto nearest = other.tree.nearest_within(point, options.search_distance);
+                                           const Vec3& normal, Index hint,
+                                           const ContactOptions& options) {
+  const auto nearest = other.tree.nearest_within(point, search_limit(other, point, hint, options));
   if (!nearest || beyond_border(other, point, *nearest)) return std::nullopt;
 
-  FacedPoint faced{nearest->triangle, nearest->barycentric, Vec3::Zero()};
+  FacedPoint faced{nearest->triangle, nearest->triangle, nearest->barycentric, Vec3::Zero()};
   if (options.normal == ContactNormal::smooth) {
     const auto smooth = along_smooth_normal(other, point, *nearest);
     if (!smooth) return std::nullopt;

@@ -16,6 +16,7 @@ struct OtherSurface {
 
 /// Point of the other surface that a sample faces.
 struct FacedPoint {
+  Index nearest = 0;  ///< triangle of the nearest point: a hint for the next search
   Index triangle = 0;
   Vec3 barycentric = Vec3::Zero();  ///< may leave [0, 1] slightly with smooth normals
   Vec3 normal = Vec3::Zero();       ///< unit, away from the other surface
@@ -23,8 +24,10 @@ struct FacedPoint {
 
 /// What a sample at `point` with outward normal `normal` faces; nullopt when nothing near enough
 /// does.
+/// @param hint  triangle that was nearest before, or -1: changes the cost, not the answer
 std::optional<FacedPoint> find_faced_point(const OtherSurface& other, const Vec3& point,
-                                           const Vec3& normal, const ContactOptions& options);
+                                           const Vec3& normal, Index hint,
+                                           const ContactOptions& options);
 
 /// How far the smooth surface stands out from each edge of each triangle: the patch over a triangle
 /// is higher than the facet by the sum of bulge times both corners' weights, over its edges (edge k

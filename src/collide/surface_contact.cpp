@@ -147,7 +147,32 @@ void SurfaceContact::update_curvature(const VecX& x) {
   other_bulge_ = edge_bulges(other_mesh_);
 }
 
-void SurfaceContact::update_pairs(const VecX& x) {
+/// Whether each owner has to be searched for; empty: all.
+std::vector<char> SurfaceContact::owners_within(double reach, const Points& slave) const {
+  if (!(reach < kInfinity) || options_.rule != ContactRule::nodal) return {};
+  if (searched_slave_.rows() != slave.rows() || options_.quadrature == ContactQuadrature::cut) {
+    return {};
+  }
+  const double way = (slave - searched_slave_).rowwise().norm().maxCoeff() +
+                     (other_mesh_.points - searched_other_).rowwise().norm().maxCoeff();
+  if (!(way < reach)) return {};
+  std::vector<char> wanted(multiplier_.size());
+  for (std::size_t v = 0; v < wanted.size(); ++v) {
+    wanted[v] = !(searched_gap_[static_cast<Eigen::Index>(v)] > reach);
+  }
+  return wanted;
+}
+
+void SurfaceContact::note_search(const VecX& x, const Points& slave) {
+  searched_gap_ = VecX::Constant(static_cast<Eigen::Index>(multiplier_.size()), kNaN);
+  for (const ContactConstraint& constraint : constraints_) {
+    searched_gap_[constraint.owner] = gap(constraint, x);
+  }
+  searched_slave_ = slave;
+  searched_other_ = other_mesh_.points;
+}
+
+void SurfaceContact::update_pairs(const VecX& x, double reach) {
   prepare_other(x);
   const TriMesh slave{surface_points(slave_, x), slave_.triangles};
   const Points facet_normals = triangle_normals(slave), normals = vertex_normals(slave);
@@ -160,9 +185,14 @@ void SurfaceContact::update_pairs(const VecX& x) {
   }
 
   const bool at_vertices = options_.quadrature == ContactQuadrature::vertices;
+  if (nearest_.size() != samples_.size()) nearest_.assign(samples_.size(), -1);
+  const std::vector<char> wanted = owners_within(reach, slave.points);
   std::vector<std::optional<ContactPair>> found(samples_.size());
   parallel_for(n_samples(), [&](Index s) {
     const ContactSample& sample = samples_[static_cast<std::size_t>(s)];
+    const auto is_wanted = [&](Index v) { return wanted[static_cast<std::size_t>(v)] != 0; };
+    const auto corners = slave_.triangles.row(sample.triangle);
+    if (!wanted.empty() && std::none_of(corners.begin(), corners.end(), is_wanted)) return;
     Vec3 point = Vec3::Zero(), vertex_normal = Vec3::Zero();
     for (int k = 0; k < 3; ++k) {
       const Index v = slave_.triangles(sample.triangle, k);
@@ -171,7 +201,9 @@ void SurfaceContact::update_pairs(const VecX& x) {
     }
     const Vec3 normal =
         (at_vertices ? vertex_normal : facet_normals.row(sample.triangle).transpose()).normalized();
-    const auto faced = find_faced_point(other, point, normal, options_);
+    const auto faced =
+        find_faced_point(other, point, normal, nearest_[static_cast<std::size_t>(s)], options_);
+    nearest_[static_cast<std::size_t>(s)] = faced ? faced->nearest : -1;
     if (!faced) return;
     const double bulges =
         bulge(slave_bulge_, sample.triangle, sample.barycentric) * -normal.dot(faced->normal) +
@@ -190,8 +222,9 @@ void SurfaceContact::update_pairs(const VecX& x) {
   if (options_.rule == ContactRule::pointwise) {
     make_pointwise_constraints();
   } else {
-    make_nodal_constraints();
+    make_nodal_constraints(wanted);
   }
+  if (wanted.empty()) note_search(x, slave.points);
 }
 
 }  // namespace coxa::collide

@@ -63,7 +63,8 @@ class ElementAssembly {
   /// Adds -weight P r to each node, P = first_piola(e, q).
   template <class FirstPiola>
   void add_force(const FirstPiola& first_piola, VecX& force) const {
-    const auto part = std::make_unique_for_overwrite<Vec3[]>(node_.size());
+    part_.resize(node_.size());
+    Vec3* part = part_.data();
     parallel_for(n_elements_, [&](Index e) {
       for (int a = 0; a < n_nodes_; ++a) part[corner(e, a)].setZero();
       for (int q = 0; q < n_points_; ++q) {
@@ -71,7 +72,7 @@ class ElementAssembly {
         for (int a = 0; a < n_nodes_; ++a) part[corner(e, a)] -= P * shape_gradient(e, q, a);
       }
     });
-    scatter_.gather_force(part.get(), force);
+    scatter_.gather_force(part, force);
   }
 
   /// Gradients of the shape functions at point q of element e.
@@ -117,7 +118,9 @@ class ElementAssembly {
   std::vector<Vec3> shape_gradient_;  // M × n_points × n_nodes, material axes, 1/mm
   Points offset_;                     // N × 3
   Scatter scatter_;                   // elements to particles
-  mutable std::vector<Mat3> blocks_;  // of the elements, kept for the next call
+  // of the elements, kept for the next call
+  mutable std::vector<Mat3> blocks_;
+  mutable std::vector<Vec3> part_;
 };
 
 }  // namespace coxa::fem

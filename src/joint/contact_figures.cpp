@@ -8,19 +8,29 @@
 #include "frame_figures.h"
 
 namespace coxa::joint {
-namespace {
 
-std::vector<collide::ContactSample> pressed(const std::vector<collide::ContactSample>& samples) {
-  std::vector<collide::ContactSample> kept;
-  std::copy_if(samples.begin(), samples.end(), std::back_inserter(kept),
-               [](const collide::ContactSample& sample) { return sample.pressure > 0.0; });
-  return kept;
+std::vector<collide::ContactSample> samples_in_contact(const HipSystem& system,
+                                                       const HipState& state) {
+  const collide::SurfaceContact& contact = state.contact;
+  VecX overlap = VecX::Zero(contact.slave().n_vertices());
+  for (const collide::ContactConstraint& constraint : contact.constraints()) {
+    const double p = contact.pressure(constraint, state.x);
+    overlap[constraint.owner] =
+        p > 0.0 ? p / system.foundation_stiffness() : -contact.gap(constraint, state.x);
+  }
+  std::vector<collide::ContactSample> samples = contact.samples(state.x);
+  std::erase_if(samples, [&](const collide::ContactSample& sample) {
+    double sum = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      sum += sample.barycentric[k] * overlap[contact.slave().triangles(sample.triangle, k)];
+    }
+    return !(sample.pressure > 0.0 && sum > 0.0);
+  });
+  return samples;
 }
 
-}  // namespace
-
 double pressure_percentile(const std::vector<collide::ContactSample>& samples, double share) {
-  std::vector<collide::ContactSample> sorted = pressed(samples);
+  std::vector<collide::ContactSample> sorted = samples;
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& a, const auto& b) { return a.pressure < b.pressure; });
   double total = 0.0, below = 0.0;

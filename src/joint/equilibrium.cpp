@@ -13,18 +13,20 @@ namespace {
 
 // longest move of a node in one Newton step, mm: a fraction of the cartilage's thickness
 constexpr double kMaxNodeStep = 0.3;
-// linear solves that one elastic tangent serves: strains change little within a sub-step, contact
-// much
-constexpr int kTangentAge = 8;
+// linear solves that one elastic tangent serves, over several sub-steps: strains and the femur's
+// turn change little meanwhile, contact much
+constexpr int kTangentAge = 16;
 // linear solves need not be better than this far from equilibrium, nor better than that near it
 constexpr double kLoosestLinear = 0.1, kTightestLinear = 1e-3;
 // net force left on a cartilage, in residual tolerances: with the usual 2e-4, half of what the
 // bones' reactions may be out of balance
 constexpr double kImbalance = 2.5;
 // stale pairs make no use of a residual smaller than this share of what they left
-constexpr double kStalePairs = 0.01;
+constexpr double kStalePairs = 0.03;
 // residual tolerance is tightened no further than by this for the sake of the net force
 constexpr double kFinestNewton = 0.03;
+// while a state settles, nodes of wider gaps than this are left alone, mm
+constexpr double kReach = 0.5;
 // a state that is only passed through may be so much less exact
 constexpr double kSlackOnTheWay = 20.0, kOverlapSlack = 10.0;
 
@@ -259,17 +261,20 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
       .penetration = std::min(slack, kOverlapSlack) * options_.penetration_tolerance};
   int iterations = 0;
   std::string reason;
-  tangent_age_ = 0;
   Relaxation relaxation;
   Progress progress;
   // what was stiffened on the way to the state before is slow to change, and may not be needed now
   state.contact.clear_stiffening();
   for (int round = 0;; ++round) {
     monitor.check_cancelled();
-    state.contact.update_pairs(state.x);
+    state.contact.update_pairs(state.x, round == 0 ? kInfinity : kReach);
     Settling settling = judge(state, force, limits);
     settling.iterations = iterations;
-    if (settling.converged) return settling;
+    if (settling.converged) {
+      // results tell gaps everywhere
+      if (exactness == Exactness::result && round > 0) state.contact.update_pairs(state.x);
+      return settling;
+    }
     const bool hopeless = progress.stalled(settling.residual, settling.penetration);
     if (hopeless || round == options_.max_contact_updates) {
       settling.reason = join_text("no equilibrium after ", iterations, " Newton steps: residual ",
@@ -280,7 +285,7 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
       return settling;
     }
     // multipliers wait until the pairs have nearly found their place
-    if (settling.residual <= 10.0 * limits.residual && settling.penetration > limits.penetration) {
+    if (settling.residual <= 100.0 * limits.residual && settling.penetration > limits.penetration) {
       state.contact.update_multipliers(state.x, limits.penetration);
       relaxation = {};
     }
@@ -292,6 +297,7 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
     const VecX before = state.x;
     const SolveReport newton = relax(state, force, tolerance, reference_force(state, force));
     iterations += newton.iterations;
+    if (!newton.converged) tangent_age_ = 0;
     reason = newton.reason;
     state.x = relaxation.next(before, state.x);
     const double way = state.x.segment<3>(3 * system_.translation()).norm();

@@ -1,9 +1,9 @@
 #include "frame_figures.h"
 
 #include <coxa/core/parallel.h>
-#include <coxa/fem/results.h>
 #include <coxa/mesh/measures.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -14,7 +14,8 @@ namespace {
 constexpr double kPatchArea = 5.0;  // mm²
 
 void fill_contact(FrameResult& frame, const std::vector<collide::ContactSample>& samples,
-                  const Vec3& force, const ClockFace& clock) {
+                  const std::vector<collide::ContactSample>& touching, const Vec3& force,
+                  const ClockFace& clock) {
   ContactFigures& contact = frame.contact;
   double total_area = 0.0, total_force = 0.0;
   Vec3 weighted = Vec3::Zero();
@@ -22,12 +23,12 @@ void fill_contact(FrameResult& frame, const std::vector<collide::ContactSample>&
     total_area += sample.area;
     if (sample.gap < 0.0) contact.deepest_sample = std::max(contact.deepest_sample, -sample.gap);
     if (sample.pressure == 0.0) continue;
-    contact.contact_area += sample.area;
     total_force += sample.pressure * sample.area;
     weighted += sample.pressure * sample.area * sample.point;
   }
-  contact.peak_pressure_p99 = pressure_percentile(samples, 0.99);
-  contact.peak_pressure_p95 = pressure_percentile(samples, 0.95);
+  for (const collide::ContactSample& sample : touching) contact.contact_area += sample.area;
+  contact.peak_pressure_p99 = pressure_percentile(touching, 0.99);
+  contact.peak_pressure_p95 = pressure_percentile(touching, 0.95);
   contact.peak_pressure_patch = patch_peak(samples, kPatchArea);
   contact.contact_share = contact.contact_area / total_area;
   if (contact.contact_area > 0.0) {
@@ -121,7 +122,9 @@ ElementStrains element_strains(const fem::ElasticForce& elasticity, const VecX& 
     const Mat3 E = 0.5 * (F.transpose() * F - Mat3::Identity());
     const Mat3 deviator = E - E.trace() / 3.0 * Mat3::Identity();
     strains.effective[e] = std::sqrt(2.0 / 3.0) * deviator.norm();
-    strains.least[e] = fem::principal_values(E)[2];
+    strains.least[e] = Eigen::SelfAdjointEigenSolver<Mat3>()
+                           .computeDirect(E, Eigen::EigenvaluesOnly)
+                           .eigenvalues()[0];
   });
   return strains;
 }
@@ -170,7 +173,7 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
   const std::vector<collide::ContactSample> samples = state.contact.samples(state.x);
   const Vec3 force = contact_force(state.contact, state.x);
   fill_displacements(frame, model, system, state);
-  fill_contact(frame, samples, force, clock);
+  fill_contact(frame, samples, samples_in_contact(system, state), force, clock);
   fill_socket_nodes(frame, state.contact, samples, system.n_acetabular());
   fill_head_nodes(frame, model, system, state);
 

@@ -10,7 +10,13 @@ namespace coxa::joint {
 void update_figures(FrameResult& frame, const JointModel& model, const HipSystem& system,
                     Equilibrium& equilibrium, const HipState& state, const ClockFace& clock);
 
-/// Pressure below which `share` of the pressed area lies, MPa; 0 without contact.
+/// The samples in contact. Where it ends between two nodes is told by what the rigid bodies would
+/// overlap there: inside the pressure over the foundation's stiffness, outside minus the gap, and
+/// linear between nodes.
+std::vector<collide::ContactSample> samples_in_contact(const HipSystem& system,
+                                                       const HipState& state);
+
+/// Pressure below which `share` of the samples' area lies, MPa; 0 without samples.
 double pressure_percentile(const std::vector<collide::ContactSample>& samples, double share);
 
 /// Greatest mean pressure over a disc of `area` mm² around any pressed sample, MPa.

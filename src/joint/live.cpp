@@ -9,6 +9,7 @@
 #include "bone_limit.h"
 #include "equilibrium.h"
 #include "frame_figures.h"
+#include "predictor.h"
 
 namespace coxa::joint {
 
@@ -30,6 +31,7 @@ struct LiveHip::Impl {
   Equilibrium rough_equilibrium, exact_equilibrium;
   ClockFace clock;
   HipState state;
+  Predictor predictor;
 
   Impl(const JointModel& hip, const LoadCase& load)
       : model(hip),
@@ -63,10 +65,15 @@ FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
   const auto start = std::chrono::steady_clock::now();
   Equilibrium& equilibrium = exactness == Exactness::result ? exact_equilibrium : rough_equilibrium;
   HipState trial = state;
-  trial.pose = target;
-  system.update_pose(trial.x, state.pose, target);
+  predictor.carry(system, trial, target);
   const Settling settling = equilibrium.settle(trial, force, exactness, monitor);
-  if (settling.converged) state = std::move(trial);
+  if (settling.converged) {
+    // settling in place is no step
+    if (exactness == Exactness::on_the_way) predictor.note(state);
+    state = std::move(trial);
+  } else {
+    predictor.forget();
+  }
   FrameResult frame;
   frame.status = settling.converged ? FrameStatus::converged : FrameStatus::failed;
   frame.reason = settling.reason;

@@ -39,8 +39,7 @@ Settling March::advance(HipState& state, const BonePose& target, const Vec3& for
   while (true) {
     const double next = done + step > 1.0 - 1e-9 ? 1.0 : done + step;
     HipState trial = state;
-    trial.pose = between(start.pose, target, next);
-    system_.update_pose(trial.x, state.pose, trial.pose);
+    predictor_.carry(system_, trial, between(start.pose, target, next));
     const auto exactness = next == 1.0 ? Exactness::result : Exactness::on_the_way;
     Settling settling = equilibrium_.settle(trial, force, exactness, monitor);
     iterations += settling.iterations;
@@ -49,13 +48,16 @@ Settling March::advance(HipState& state, const BonePose& target, const Vec3& for
       VecX forces_there = equilibrium_.node_forces(trial);
       work_ += work_between(state, trial, forces, forces_there);
       forces = std::move(forces_there);
+      predictor_.note(state);
       state = std::move(trial);
       done = next;
       if (done == 1.0) return settling;
     } else if (cutbacks++ < options_.max_cutbacks) {
       step *= 0.5;
+      predictor_.forget();
     } else {
       state = start;
+      predictor_.forget();
       work_ = work_at_start;
       return settling;
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "equilibrium.h"
+#include "predictor.h"
 
 namespace coxa::joint {
 
@@ -27,6 +28,7 @@ class March {
   const HipSystem& system_;
   const JointOptions& options_;
   Equilibrium equilibrium_;
+  Predictor predictor_;
   double work_ = 0.0;
 };
 

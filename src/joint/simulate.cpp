@@ -166,7 +166,7 @@ void Simulation::find_sensitivity() {
       target.shift += (side == 0 ? -1.0 : 1.0) * sensitivity.shift * model_.X_IP.R.col(axis);
       const Settling settling = held.advance(state, target, Vec3::Constant(kNaN), monitor_);
       sensitivity.peak(axis, side) =
-          settling.converged ? pressure_percentile(state.contact.samples(state.x), 0.99) : kNaN;
+          settling.converged ? pressure_percentile(samples_in_contact(system_, state), 0.99) : kNaN;
     }
   }
   result_.sensitivity = sensitivity;

@@ -268,6 +268,30 @@ TEST(SurfaceContact, RejectsBadOptionsWithTheirValue) {
   }
 }
 
+TEST(SurfaceContactReach, LeavesOutOnlyWhatCannotPress) {
+  const auto make = [] { return ball_contact({ContactNormal::smooth, ContactRule::nodal}); };
+  SurfaceContact everywhere = make(), near = make();
+  near.update_pairs(ball_x);
+  const auto all = near.constraints().size();
+  const VecX moved = test::shaken(ball_x, 0.05);
+  everywhere.update_pairs(moved);
+  near.update_pairs(moved, 0.5);
+  EXPECT_LT(near.constraints().size(), all);
+  EXPECT_GT(near.constraints().size(), std::size_t{0});
+  EXPECT_EQ(force_of(near, moved), force_of(everywhere, moved));
+  EXPECT_GT(force_of(near, moved).norm(), 1.0);
+}
+
+TEST(SurfaceContactReach, SearchesEverywhereAfterALongWay) {
+  SurfaceContact contact = ball_contact({ContactNormal::smooth, ContactRule::nodal});
+  contact.update_pairs(ball_x);
+  const auto all = contact.constraints().size();
+  VecX far = ball_x;
+  for (Index i = 2; i < 3 * ball.n_vertices(); i += 3) far[i] += 0.6;
+  contact.update_pairs(far, 0.5);
+  EXPECT_GE(contact.constraints().size(), all);
+}
+
 /// A plate of side 10 over a shifted floor of another mesh; the plate looks down.
 struct PlateOverFloor {
   TriMesh plate = test::turned_over(test::plate(-0.02, 5.0, 4)), floor = test::plate(0.0, 5.0, 7);

@@ -94,7 +94,12 @@ class SurfaceContact : public dynamics::Force {
   SurfaceContact(ParticleSurface slave, TriMesh obstacle, const ContactOptions& options = {});
 
   /// Searches the pairs anew at particle positions x (3n values).
-  void update_pairs(const VecX& x);
+  ///
+  /// With a finite `reach` (mm; nodal rule) vertices whose gap was larger at the last search
+  /// everywhere have no constraint and cost nothing, unless the surfaces have moved by so much
+  /// since that they could have come to touch: then the search is everywhere after all. What
+  /// presses is the same either way.
+  void update_pairs(const VecX& x, double reach = kInfinity);
   /// Moves the obstacle's vertices; takes effect at the next update_pairs.
   void update_obstacle(const Points& points);
   /// Takes the surfaces as smooth with the curvature they have at x: from now on samples and the
@@ -137,11 +142,13 @@ class SurfaceContact : public dynamics::Force {
   void make_samples();
   void update_areas(const VecX& areas);
   void prepare_other(const VecX& x);
+  std::vector<char> owners_within(double reach, const Points& slave) const;
+  void note_search(const VecX& x, const Points& slave);
   void append_entries(const ContactPair& pair, double share, Entries& entries) const;
   void append_constraint(ContactConstraint constraint, Entries& entries);
   void forget(std::size_t owner);
   void make_pointwise_constraints();
-  void make_nodal_constraints();
+  void make_nodal_constraints(const std::vector<char>& wanted);
   std::vector<std::vector<Index>> slave_groups() const;
   double obstacle_height(const ContactPair& pair) const;
   Vec3 other_point(const ContactPair& pair, const Points& points) const;
@@ -152,9 +159,13 @@ class SurfaceContact : public dynamics::Force {
   TriMesh other_mesh_;                    ///< current positions of the other surface
   std::vector<ContactSample> samples_;    ///< as of the last update of pairs
   Points slave_bulge_, other_bulge_;      ///< per triangle and edge, mm; empty: flat facets
-  std::vector<double> multiplier_;        ///< per owner, MPa
-  std::vector<double> stiffening_;        ///< per owner, >= 1
-  std::vector<double> overlap_;           ///< per owner, mm, at the last update of multipliers
+  /// Of the last search everywhere: gap of each owner, mm (NaN without a pair), and the surfaces.
+  VecX searched_gap_;
+  Points searched_slave_, searched_other_;
+  std::vector<Index> nearest_;      ///< per sample: nearest triangle of the last search, or -1
+  std::vector<double> multiplier_;  ///< per owner, MPa
+  std::vector<double> stiffening_;  ///< per owner, >= 1
+  std::vector<double> overlap_;     ///< per owner, mm, at the last update of multipliers
   std::optional<TriangleTree> tree_;
   Eigen::Matrix<bool, Eigen::Dynamic, 3, Eigen::RowMajor> boundary_edge_;
   std::vector<bool> boundary_vertex_;

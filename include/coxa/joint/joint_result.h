@@ -42,7 +42,7 @@ struct ContactFigures {
   double peak_pressure_p95 = 0.0;    ///< MPa, 95th
   double peak_pressure_patch = 0.0;  ///< MPa, greatest mean over a patch of 5 mm²
   double mean_pressure = 0.0;        ///< MPa, over the contact area
-  double contact_area = 0.0;         ///< mm², where the pressure is positive
+  double contact_area = 0.0;         ///< mm², where the surfaces press on each other
   double contact_share = 0.0;        ///< of the acetabular articular area, in [0, 1]
   Vec3 centre_of_pressure = Vec3::Constant(kNaN);  ///< mm, image frame
   double centre_hour = kNaN;                       ///< of the centre of pressure on the clock face

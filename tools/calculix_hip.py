@@ -1,0 +1,167 @@
+#!/usr/bin/python3
+"""A hip pressed by a prescribed way in CalculiX (Debian package calculix-ccx), beside coxa on the same meshes.
+
+usage: calculix_hip.py JOINT.toml [--press build/release/joint_press] [--way 0.7] [--along X Y Z] [--stiffness 100]
+                       [--ten-node] [--threads 1] [--work DIR]
+
+The deck is the meshes that joint_press writes as .inp, with the socket's bone side held, the head's bone side moved, E 12 MPa
+and Poisson's ratio 0.42, frictionless surface-to-surface penalty contact, large deformations.  Default direction: against the
+opening axis of libhip m2 left.  Force from reactions; area, pressures and centre of pressure from the contact stresses at the slave's integration
+points, as coxa samples its own.
+"""
+import argparse
+import os
+import pathlib
+import subprocess
+import time
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+AXIS_M2_LEFT = [-0.72366, 0.33958, 0.60083]
+
+
+def parse(deck):
+    """Nodes, elements and surfaces of one mesh as coxa writes it."""
+    nodes, elements, surfaces, current = {}, {}, {}, None
+    kind = ""
+    for line in deck.splitlines():
+        if line.startswith("**"):
+            continue
+        if line.startswith("*"):
+            fields = dict(f.strip().split("=") for f in line.split(",")[1:] if "=" in f)
+            if line.startswith("*NODE"):
+                current = "node"
+            elif line.startswith("*ELEMENT"):
+                current, kind = "element", fields["TYPE"]
+            elif line.startswith("*SURFACE"):
+                current = surfaces.setdefault(fields["NAME"], [])
+            else:
+                current = None
+        elif current == "node":
+            number, *place = line.split(",")
+            nodes[int(number)] = [float(v) for v in place]
+        elif current == "element":
+            number, *corners = line.split(",")
+            elements[int(number)] = [int(v) for v in corners]
+        elif isinstance(current, list):
+            element, side = line.split(",")
+            current.append((int(element), int(side.strip()[1:])))
+    return nodes, elements, surfaces, kind
+
+
+# corners, then mid nodes, of the sides S1 to S4 of a tetrahedron
+SIDES = {1: (0, 1, 2, 4, 5, 6), 2: (0, 3, 1, 7, 8, 4), 3: (1, 3, 2, 8, 9, 5), 4: (2, 3, 0, 9, 7, 6)}
+
+
+def side_nodes(elements, side):
+    element = elements[side[0]]
+    return [element[k] for k in SIDES[side[1]] if k < len(element)]
+
+
+def wrapped(numbers):
+    return "".join(", ".join(map(str, numbers[k:k + 12])) + ",\n" for k in range(0, len(numbers), 12))
+
+
+def write_deck(path, meshes, move, stiffness):
+    """One deck of both meshes; the head's numbers follow the socket's."""
+    text, offset_node, offset_element = "", 0, 0
+    for name, (nodes, elements, surfaces, kind) in meshes.items():
+        text += "*NODE\n" + "".join(f"{n + offset_node}, {p[0]:.15g}, {p[1]:.15g}, {p[2]:.15g}\n" for n, p in nodes.items())
+        text += f"*ELEMENT, TYPE={kind}, ELSET={name}\n"
+        for number, corners in elements.items():
+            text += f"{number + offset_element}, " + ", ".join(str(c + offset_node) for c in corners) + "\n"
+        bone = sorted({n + offset_node for s in surfaces["bone_side"] for n in side_nodes(elements, s)})
+        text += f"*NSET, NSET={name}_bone\n" + wrapped(bone)
+        text += f"*NSET, NSET={name}_all\n" + wrapped(sorted(n + offset_node for n in nodes))
+        text += f"*SURFACE, NAME={name}_side, TYPE=ELEMENT\n"
+        text += "".join(f"{e + offset_element}, S{s}\n" for e, s in surfaces["articular_side"])
+        text += f"*SOLID SECTION, ELSET={name}, MATERIAL=cartilage\n"
+        offset_node += max(nodes)
+        offset_element += max(elements)
+    text += "*MATERIAL, NAME=cartilage\n*ELASTIC\n12.0, 0.42\n"
+    text += f"*SURFACE INTERACTION, NAME=sliding\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{stiffness}\n"
+    text += "*CONTACT PAIR, INTERACTION=sliding, TYPE=SURFACE TO SURFACE\nsocket_side, head_side\n"
+    text += "*BOUNDARY\nsocket_bone, 1, 3\n*STEP, NLGEOM, INC=200\n*STATIC\n0.25, 1.0\n*BOUNDARY\n"
+    text += "".join(f"head_bone, {c + 1}, {c + 1}, {move[c]:.12g}\n" for c in range(3))
+    text += "*NODE PRINT, NSET=socket_bone, TOTALS=ONLY, FREQUENCY=1000\nRF\n"
+    text += "*NODE PRINT, NSET=socket_all, FREQUENCY=1000\nU\n"
+    text += "*CONTACT PRINT, FREQUENCY=1000\nCDIS\n*CONTACT PRINT, SLAVE=socket_side, MASTER=head_side, FREQUENCY=1000\nCF\n*END STEP\n"
+    path.write_text(text)
+
+
+def sections(printed):
+    """The blocks of numbers of a .dat file, under their headings, of the last increment."""
+    found, heading = {}, ""
+    for line in printed.splitlines():
+        words = line.split()
+        if not words:
+            continue
+        try:
+            found.setdefault(heading, []).append([float(w) for w in words])
+        except ValueError:
+            heading = line.strip()
+            found[heading] = []
+    return found
+
+
+def section(found, word):
+    return next(rows for heading, rows in found.items() if word in heading)
+
+
+def percentile(values, areas, share):
+    order = np.argsort(values)
+    below = np.cumsum(areas[order])
+    return values[order][np.searchsorted(below, share * below[-1])]
+
+
+def figures(printed, meshes, stiffness):
+    found = sections(printed)
+    force = np.array(section(found, "total force (fx,fy,fz) for set SOCKET_BONE")[0])
+    moved = {int(r[0]): np.array(r[1:4]) for r in section(found, "displacements")}
+    area = section(found, "area,  normal force")[0][0]
+    nodes, elements, surfaces, _ = meshes["socket"]
+    overlaps = {}
+    for row in section(found, "relative contact displacement"):
+        overlaps.setdefault((int(row[0]), int(row[1])), []).append(max(0.0, -row[2]))
+    pressures, areas, places = [], [], []
+    for side, values in overlaps.items():
+        a, b, c = (np.array(nodes[n]) + moved[n] for n in side_nodes(elements, side)[:3])
+        pressures.append(stiffness * np.mean(values))
+        areas.append(0.5 * np.linalg.norm(np.cross(b - a, c - a)))
+        places.append((a + b + c) / 3.0)
+    pressures, areas, places = np.array(pressures), np.array(areas), np.array(places)
+    centre = (places * (pressures * areas)[:, None]).sum(axis=0) / (pressures * areas).sum()
+    return (f"force {np.linalg.norm(force):.1f} N ({force[0]:.1f} {force[1]:.1f} {force[2]:.1f}), area {area:.1f} mm2, "
+            f"p95 {percentile(pressures, areas, 0.95):.3f}, p99 {percentile(pressures, areas, 0.99):.3f} MPa (means of faces), "
+            f"centre of pressure {centre[0]:.2f} {centre[1]:.2f} {centre[2]:.2f}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("joint")
+    parser.add_argument("--press", default=ROOT / "build/release/joint_press")
+    parser.add_argument("--way", type=float, default=0.7)
+    parser.add_argument("--along", type=float, nargs=3, default=AXIS_M2_LEFT)
+    parser.add_argument("--stiffness", type=float, default=100.0)
+    parser.add_argument("--ten-node", action="store_true")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_hip"))
+    options = parser.parse_args()
+    options.work.mkdir(parents=True, exist_ok=True)
+    along = np.array(options.along) / np.linalg.norm(options.along)
+    ours = [str(options.press), options.joint, "--way", str(options.way), "--along", *map(str, along), "--decks", str(options.work)]
+    print("coxa:", subprocess.run(ours + ["--ten-node"] * options.ten_node, check=True, capture_output=True, text=True).stdout, end="")
+    meshes = {"socket": parse((options.work / "acetabular.inp").read_text()),
+              "head": parse((options.work / "femoral.inp").read_text())}
+    write_deck(options.work / "hip.inp", meshes, options.way * along, options.stiffness)
+    start = time.time()
+    done = subprocess.run(["ccx", "hip"], cwd=options.work, capture_output=True, text=True,
+                          env={**os.environ, "OMP_NUM_THREADS": str(options.threads)})
+    (options.work / "hip.log").write_text(done.stdout + done.stderr)
+    print(f"CalculiX: {time.time() - start:.0f} s, ended with {done.returncode}")
+    print("CalculiX:", figures((options.work / "hip.dat").read_text(), meshes, options.stiffness))
+
+
+if __name__ == "__main__":
+    main()
