@@ -1,6 +1,7 @@
 #include <coxa/pipeline/motion_stage.h>
 
 #include <coxa/core/error.h>
+#include <coxa/io/atlas_file.h>
 #include <coxa/io/files.h>
 #include <coxa/io/landmarks.h>
 #include <coxa/io/markers.h>
@@ -8,7 +9,10 @@
 #include <coxa/io/movement_files.h>
 #include <coxa/io/track_config.h>
 #include <coxa/motion/clinical_pattern.h>
+#include <coxa/pipeline/completed_bones.h>
+#include <coxa/pipeline/frame_picture.h>
 #include <coxa/pipeline/segment_stage.h>
+#include <coxa/view/png.h>
 
 #include <algorithm>
 #include <cmath>
@@ -51,6 +55,7 @@ Record wanted_record(const Subject& subject, const fs::path& segment_folder) {
   record.inputs["segment"] = record_key(read_record(segment_folder / "segment.json"));
   if (!subject.landmarks.empty())
     record.inputs["landmarks"] = io::sha256_of_path(subject.landmarks);
+  record.inputs["atlas"] = io::sha256_of_path(subject.atlas);
   if (subject.motion.from) record.options["from_s"] = *subject.motion.from;
   if (subject.motion.to) record.options["to_s"] = *subject.motion.to;
   if (subject.motion.pattern.empty()) {
@@ -167,8 +172,8 @@ Record run_motion_stage(const Subject& subject, const fs::path& segment_folder,
     const auto centre = motion::find_joint_centre(surfaces, {}, monitor);
     motion::FrameLandmarks landmarks;
     if (!subject.landmarks.empty()) landmarks.points = io::read_landmarks(subject.landmarks);
-    const auto frames =
-        motion::make_bone_frames(surfaces, landmarks, centre.chosen.centre, subject.side);
+    const auto frames = make_completed_frames(surfaces, landmarks, io::read_atlas(subject.atlas),
+                                              centre.chosen.centre, subject.side);
     monitor.progress("motion", 0.3);
     const motion::HipMotion motion = make_motion(subject, partial, monitor);
     io::write_motion(partial / "motion.csv", motion);
@@ -177,6 +182,7 @@ Record run_motion_stage(const Subject& subject, const fs::path& segment_folder,
         partial / "frames.json",
         Json{{"pelvis", as_json(frames.pelvis)}, {"femur", as_json(frames.femur)}}.dump(2) + "\n");
     write_centres(partial / "joint_centres.csv", centre);
+    view::write_png(partial / "frames.png", draw_bone_frames(surfaces, frames, subject.side));
     add_figures(centre, frames, record);
     for (const auto* list : {&centre.warnings, &frames.warnings, &motion.warnings}) {
       record.warnings.insert(record.warnings.end(), list->begin(), list->end());

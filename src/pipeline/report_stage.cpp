@@ -3,6 +3,7 @@
 #include <coxa/core/error.h>
 #include <coxa/io/landmarks.h>
 #include <coxa/joint/joint_result.h>
+#include <coxa/pipeline/frame_picture.h>
 #include <coxa/pipeline/motion_stage.h>
 #include <coxa/pipeline/segment_stage.h>
 #include <coxa/view/pictures.h>
@@ -186,7 +187,8 @@ VecX column(const ResultFrames& frames, const std::string& name) {
   return values;
 }
 
-void add_curves(view::ReportWriter& page, const ResultFrames& frames) {
+void add_curves(view::ReportWriter& page, const ResultFrames& frames,
+                const motion::HipMotion& motion) {
   page.heading("Curves");
   const VecX time = column(frames, "time_s");
   const auto plot = [&](const std::string& title, const std::string& unit,
@@ -200,6 +202,7 @@ void add_curves(view::ReportWriter& page, const ResultFrames& frames) {
        {{"flexion", "flexion_deg"},
         {"adduction", "adduction_deg"},
         {"internal rotation", "internal_rotation_deg"}});
+  if (!motion.interval.empty()) page.plot(angle_plot(motion));
   plot("Contact pressure", "MPa",
        {{"peak (99th percentile)", "peak_pressure_p99_MPa"},
         {"peak (5 mm² patch)", "peak_pressure_5mm2_MPa"},
@@ -252,6 +255,11 @@ void add_anatomy(view::ReportWriter& page, const Subject& subject, const Sources
   const view::Image surfaces = view::draw_surfaces(s.surfaces);
   view::write_png(folder / "surfaces.png", surfaces);
   page.picture(surfaces, "Surfaces of the bones and cartilages from the front and from behind");
+  const view::Image frames = draw_bone_frames(s.surfaces, s.artefacts.frames, subject.side);
+  view::write_png(folder / "frames.png", frames);
+  page.picture(frames, "Axes of the pelvis (" + s.artefacts.frames.pelvis.source +
+                           ") and of the femur (" + s.artefacts.frames.femur.source +
+                           ") on these bones, and the way in which each angle counts as positive");
 }
 
 }  // namespace
@@ -273,7 +281,7 @@ Record run_report_stage(const Subject& subject, const fs::path& run_folder, cons
     add_summary(page, sources);
     add_maps(page, sources, partial);
     monitor.progress("report", 0.5);
-    add_curves(page, sources.frames);
+    add_curves(page, sources.frames, sources.artefacts.motion);
     add_frame_table(page, sources.frames);
     add_anatomy(page, subject, sources, partial, monitor);
     page.heading("How it was computed");

@@ -38,9 +38,42 @@ Stand stand_of(Viewpoint viewpoint) {
   return {"", Vec3::UnitY(), Vec3::UnitZ()};
 }
 
-Image panel_of(const std::vector<SceneMesh>& scene, Camera camera, int panel) {
+constexpr Colour kArrowColours[] = {{178, 34, 34}, {0, 90, 160}, {0, 110, 70}, {90, 60, 140}};
+
+void update_arrow(Image& image, const Camera& camera, const Arrow& arrow, int panel) {
+  const Colour colour = kArrowColours[arrow.group % std::size(kArrowColours)];
+  constexpr double kThickness = 3.0, kHead = 10.0;  // pixels
+  std::vector<Vec2> pixels;
+  for (Index k = 0; k < arrow.path.rows(); ++k)
+    pixels.push_back(project(camera, arrow.path.row(k), panel, panel));
+  // what points at the eye would only cover the rest
+  constexpr double kShortest = 24.0;  // pixels
+  double extent = 0.0;
+  for (const Vec2& pixel : pixels) extent = std::max(extent, (pixel - pixels.front()).norm());
+  if (extent < kShortest) return;
+  for (std::size_t k = 1; k < pixels.size(); ++k)
+    update_line(image, pixels[k - 1], pixels[k], colour, kThickness);
+  const Vec2 tip = pixels.back(), along = tip - pixels[pixels.size() - 2];
+  if (along.norm() > 1.0) {
+    const Vec2 back = -kHead * along.normalized();
+    for (const double turn : {0.45, -0.45}) {
+      const Eigen::Rotation2Dd rotation(turn);
+      update_line(image, tip, tip + rotation * back, colour, kThickness);
+    }
+  }
+  const double width = text_width(arrow.label, kTextSize);
+  const double x = std::clamp(tip.x() + (along.x() < 0 ? -width - 6.0 : 6.0), 2.0,
+                              std::max(2.0, panel - width - 2.0));
+  const double y = std::clamp(tip.y() + (along.y() > 0 ? 4.0 : -4.0 - line_height(kTextSize)), 2.0,
+                              panel - line_height(kTextSize));
+  update_text(image, x, y, arrow.label, colour, kTextSize);
+}
+
+Image panel_of(const std::vector<SceneMesh>& scene, Camera camera, int panel,
+               const std::vector<Arrow>& arrows = {}) {
   camera.view_height *= 1.0 + 2.0 * line_height(kTextSize) / panel;  // room for the letters
   Image image = render(scene, camera, {.width = panel, .height = panel});
+  for (const Arrow& arrow : arrows) update_arrow(image, camera, arrow, panel);
   update_side_letters(image, camera.right(), camera.up, kInk);
   update_scale_bar(image, camera.view_height / panel, kInk);
   return image;
@@ -75,18 +108,27 @@ Image draw_surfaces(const SurfaceSet& surfaces, const SurfacePictureOptions& opt
     names.push_back(name);
     n_points += surface.mesh.n_vertices();
   }
+  for (const Arrow& arrow : options.arrows) {
+    require(arrow.path.rows() >= 2, "draw_surfaces: the arrow '", arrow.label,
+            "' needs at least two points");
+    n_points += static_cast<Index>(arrow.path.rows());
+  }
   Points all(n_points, 3);
   Index row = 0;
   for (const SceneMesh& part : scene) {
     all.middleRows(row, part.mesh.n_vertices()) = part.mesh.points;
     row += part.mesh.n_vertices();
   }
+  for (const Arrow& arrow : options.arrows) {
+    all.middleRows(row, arrow.path.rows()) = arrow.path;
+    row += static_cast<Index>(arrow.path.rows());
+  }
   std::vector<Image> panels;
   for (Viewpoint viewpoint : options.viewpoints) {
     const Stand stand = stand_of(viewpoint);
-    panels.push_back(
-        titled(panel_of(scene, camera_for(all, stand.direction, stand.up, 1.0), options.panel),
-               stand.name));
+    panels.push_back(titled(panel_of(scene, camera_for(all, stand.direction, stand.up, 1.0),
+                                     options.panel, options.arrows),
+                            stand.name));
   }
   const Image pictures = beside(panels);
   return below(std::array{pictures, draw_legend(names, pictures.width)}, 4);

@@ -20,8 +20,9 @@ struct FrameLandmarks {
 struct BoneFrameOptions {
   /// Angle from the femoral neck's axis back to the axis of the condyles, about the femur's long
   /// axis, where no epicondyle is known; rad.
-  double mean_anteversion = 12.0 * kPi / 180.0;
-  double anteversion_sd = 7.5 * kPi / 180.0;  ///< rad, of people about that mean
+  /// The mean of 1507 femora against the epicondyles' axis (Davis et al. 2024).
+  double mean_anteversion = 11.5 * kPi / 180.0;
+  double anteversion_sd = 7.9 * kPi / 180.0;  ///< rad, of those about that mean
   double femur_length = 420.0;  ///< mm, joint centre to knee centre, where the knee is not in view
   double positioning_sd =
       5.0 * kPi / 180.0;  ///< rad, of the pelvis in the scanner where only image axes are known

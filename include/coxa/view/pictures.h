@@ -33,10 +33,18 @@ Image draw_slices(const Volume& volume, const SurfaceSet& surfaces, const Vec3& 
 /// Where a picture is taken from.
 enum class Viewpoint { anterior, posterior, left, right, superior, inferior };
 
+/// A line with a head at its last point, drawn over a picture: an axis, or the way something turns.
+struct Arrow {
+  Points path;        ///< n×3, mm, n >= 2
+  std::string label;  ///< at its head
+  Index group = 0;    ///< arrows of a group share a colour
+};
+
 struct SurfacePictureOptions {
   std::vector<Viewpoint> viewpoints = {Viewpoint::anterior, Viewpoint::posterior};
   int panel = 420;                            ///< pixels, >= 60: side of a panel
   std::vector<std::string> see_through = {};  ///< structures drawn half transparent
+  std::vector<Arrow> arrows = {};             ///< over the surfaces, never hidden by them
 };
 
 /// Structures in their colours from one or more sides, with a legend. @throws Error bad_input for
