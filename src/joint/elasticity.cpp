@@ -1,5 +1,7 @@
 #include "elasticity.h"
 
+#include <coxa/core/error.h>
+
 #include <numeric>
 
 namespace coxa::joint {
@@ -7,20 +9,48 @@ namespace {
 
 std::unique_ptr<fem::Material> make_law(const CartilageMaterial& material) {
   const fem::Lame lame = fem::lame_from(material.youngs_modulus, material.poissons_ratio);
-  return material.law == MaterialLaw::corotational ? fem::make_corotational(lame)
-                                                   : fem::make_st_venant_kirchhoff(lame);
+  switch (material.law) {
+    case MaterialLaw::corotational:
+      return fem::make_corotational(lame);
+    case MaterialLaw::st_venant_kirchhoff:
+      return fem::make_st_venant_kirchhoff(lame);
+    case MaterialLaw::neo_hookean:
+      break;
+  }
+  return fem::make_neo_hookean({0.0, lame.mu});  // volume change is resisted by patches
 }
 
 }  // namespace
 
-std::unique_ptr<fem::ElasticForce> make_elasticity(const TetMesh& mesh, Index first_particle,
-                                                   const CartilageMaterial& material) {
+CartilageElasticity::CartilageElasticity(const TetMesh& mesh, Index first_particle,
+                                         const CartilageMaterial& material) {
   fem::ParticleMap map;
   map.particle_of.resize(static_cast<std::size_t>(mesh.n_vertices()));
   std::iota(map.particle_of.begin(), map.particle_of.end(), first_particle);
-  return std::make_unique<fem::ElasticForce>(
-      mesh, make_law(material), std::move(map),
+  by_element_ = std::make_unique<fem::ElasticForce>(
+      mesh, make_law(material), map,
       fem::ElasticOptions{.axes = {}, .tangent = fem::Tangent::positive});
+  if (material.law != MaterialLaw::neo_hookean) return;
+  const double lambda = fem::lame_from(material.youngs_modulus, material.poissons_ratio).lambda;
+  by_patch_ = std::make_unique<fem::MeanDilatation>(mesh, fem::volume_patches(mesh), lambda, map);
+}
+
+std::vector<const dynamics::Force*> CartilageElasticity::forces() const {
+  if (!by_patch_) return {by_element_.get()};
+  return {by_element_.get(), by_patch_.get()};
+}
+
+double CartilageElasticity::add_force_with_energy(const VecX& x, VecX& force) const {
+  double energy = by_element_->add_force_with_energy(x, force);
+  if (by_patch_) {
+    energy += by_patch_->energy(x);
+    by_patch_->add_force(x, VecX(), force);
+  }
+  return energy;
+}
+
+VecX CartilageElasticity::mean_stress(const VecX& x) const {
+  return by_patch_ ? by_patch_->mean_stress(x) : VecX(VecX::Zero(by_element_->n_elements()));
 }
 
 }  // namespace coxa::joint

@@ -1,15 +1,31 @@
 #pragma once
 
 #include <coxa/fem/elastic_force.h>
+#include <coxa/fem/mean_dilatation.h>
 #include <coxa/joint/joint_model.h>
 
 #include <memory>
+#include <vector>
 
 namespace coxa::joint {
 
-/// Elastic force of a cartilage whose node i is particle first_particle + i; its Jacobian is
-/// positive semidefinite, so that every Newton step goes downhill.
-std::unique_ptr<fem::ElasticForce> make_elasticity(const TetMesh& mesh, Index first_particle,
-                                                   const CartilageMaterial& material);
+/// Elastic forces of a cartilage whose node i is particle first_particle + i; the Jacobian is
+/// positive semidefinite where the law's own is not, so that Newton steps go downhill.
+class CartilageElasticity {
+ public:
+  CartilageElasticity(const TetMesh& mesh, Index first_particle, const CartilageMaterial& material);
+
+  std::vector<const dynamics::Force*> forces() const;
+  /// Adds the forces and returns the energy, N·mm; infinite where the law forbids x.
+  double add_force_with_energy(const VecX& x, VecX& force) const;
+  /// The law without what acts by patches: strains come from here.
+  const fem::ElasticForce& by_element() const { return *by_element_; }
+  /// What the patches add to the elements' mean stress, MPa; zero where there are none.
+  VecX mean_stress(const VecX& x) const;
+
+ private:
+  std::unique_ptr<fem::ElasticForce> by_element_;
+  std::unique_ptr<fem::MeanDilatation> by_patch_;  ///< null: none
+};
 
 }  // namespace coxa::joint

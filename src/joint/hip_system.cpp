@@ -6,8 +6,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "elasticity.h"
-
 namespace coxa::joint {
 namespace {
 
@@ -51,8 +49,8 @@ HipSystem::HipSystem(const JointModel& model)
       socket_nodes_(nodes_of(facets_with(model.acetabular_cartilage, FacetTag::bone_side), 0)),
       femur_nodes_(
           nodes_of(facets_with(model.femoral_cartilage, FacetTag::bone_side), n_acetabular_)),
-      socket_elasticity_(make_elasticity(model.acetabular_cartilage, 0, model.material)),
-      femur_elasticity_(make_elasticity(model.femoral_cartilage, n_acetabular_, model.material)) {
+      socket_elasticity_(model.acetabular_cartilage, 0, model.material),
+      femur_elasticity_(model.femoral_cartilage, n_acetabular_, model.material) {
   const double E = model.material.youngs_modulus, nu = model.material.poissons_ratio;
   const double confined_modulus = E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
   foundation_stiffness_ = confined_modulus / (mean_thickness(model.acetabular_cartilage) +
@@ -114,13 +112,16 @@ collide::SurfaceContact HipSystem::make_contact(double stiffness) const {
 }
 
 std::vector<const dynamics::Force*> HipSystem::elastic() const {
-  return {socket_elasticity_.get(), femur_elasticity_.get()};
+  std::vector<const dynamics::Force*> forces = socket_elasticity_.forces();
+  const auto others = femur_elasticity_.forces();
+  forces.insert(forces.end(), others.begin(), others.end());
+  return forces;
 }
 
 VecX HipSystem::elastic_force(const VecX& x, double& energy) const {
   VecX force = VecX::Zero(x.size());
-  energy = socket_elasticity_->add_force_with_energy(x, force);
-  energy += femur_elasticity_->add_force_with_energy(x, force);
+  energy = socket_elasticity_.add_force_with_energy(x, force);
+  energy += femur_elasticity_.add_force_with_energy(x, force);
   return force;
 }
 

@@ -2,12 +2,12 @@
 
 #include <coxa/collide/surface_contact.h>
 #include <coxa/dynamics/particles.h>
-#include <coxa/fem/elastic_force.h>
 #include <coxa/joint/joint_model.h>
 #include <coxa/joint/load_case.h>
 
-#include <memory>
 #include <vector>
+
+#include "elasticity.h"
 
 namespace coxa::joint {
 
@@ -45,7 +45,7 @@ class HipSystem {
   std::vector<const dynamics::Force*> elastic() const;
   /// Elastic force of both cartilages at x on all particles, N; sets their energy, N·mm.
   VecX elastic_force(const VecX& x, double& energy) const;
-  const fem::ElasticForce& socket_elasticity() const { return *socket_elasticity_; }
+  const fem::ElasticForce& socket_elasticity() const { return socket_elasticity_.by_element(); }
   /// Particles that may move; t only when it is free.
   std::vector<bool> free_particles(LoadMode mode) const;
   /// Held nodes of the acetabular and of the femoral bone side.
@@ -61,7 +61,7 @@ class HipSystem {
   Index n_acetabular_, n_femoral_;
   Vec3 centre_;
   std::vector<Index> socket_nodes_, femur_nodes_;
-  std::unique_ptr<fem::ElasticForce> socket_elasticity_, femur_elasticity_;
+  CartilageElasticity socket_elasticity_, femur_elasticity_;
   double foundation_stiffness_ = 0.0;
 };
 

@@ -64,15 +64,22 @@ FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
                                  const Monitor& monitor) {
   const auto start = std::chrono::steady_clock::now();
   Equilibrium& equilibrium = exactness == Exactness::result ? exact_equilibrium : rough_equilibrium;
+  const auto attempt = [&](HipState& trial) {
+    predictor.carry(system, trial, target);
+    return equilibrium.settle(trial, force, exactness, monitor);
+  };
   HipState trial = state;
-  predictor.carry(system, trial, target);
-  const Settling settling = equilibrium.settle(trial, force, exactness, monitor);
+  Settling settling = attempt(trial);
+  if (!settling.converged && predictor.has_rate()) {
+    // once more without the guess where the movement leads
+    predictor.forget();
+    trial = state;
+    settling = attempt(trial);
+  }
   if (settling.converged) {
     // settling in place is no step
     if (exactness == Exactness::on_the_way) predictor.note(state);
     state = std::move(trial);
-  } else {
-    predictor.forget();
   }
   FrameResult frame;
   frame.status = settling.converged ? FrameStatus::converged : FrameStatus::failed;

@@ -25,7 +25,7 @@ Eigen::Matrix<double, 6, 1> way(const BonePose& from, const BonePose& to) {
 void Predictor::carry(const HipSystem& system, HipState& state, const BonePose& target) const {
   const BonePose from = state.pose;
   state.pose = target;
-  if (x_.size() == 0) return system.update_pose(state.x, from, target);
+  if (!has_rate()) return system.update_pose(state.x, from, target);
   const auto last = way(from_, from), next = way(from, target);
   system.update_pose(state.x, from, target);
   if (!(last.dot(next) > kSameWay * last.norm() * next.norm())) return;

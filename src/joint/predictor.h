@@ -16,6 +16,7 @@ class Predictor {
   void note(const HipState& before);
   /// Forgets the rate: after a failure, or when something else has changed than the pose.
   void forget() { x_.resize(0); }
+  bool has_rate() const { return x_.size() > 0; }
 
  private:
   VecX x_;         ///< where the last step started; empty: nothing to go by

@@ -25,9 +25,14 @@ void check_displacement(const TetMesh& mesh, const Points& displacement) {
 
 /// Fields of the mesh deformed to the nodal positions x.
 StressFields fields_of(const TetMesh& mesh, const Points& x, const CartilageMaterial& material) {
-  const auto elasticity = make_elasticity(mesh, 0, material);
+  const CartilageElasticity elasticity(mesh, 0, material);
   const Eigen::Map<const VecX> values(x.data(), x.size());
-  fem::ElementFields fields = fem::compute_fields(*elasticity, values);
+  fem::ElementFields fields = fem::compute_fields(elasticity.by_element(), values);
+  const VecX mean = elasticity.mean_stress(values);
+  for (Index e = 0; e < mesh.n_tets(); ++e) {
+    fields.cauchy_stress[static_cast<std::size_t>(e)].diagonal().array() += mean[e];
+    fields.principal_stress.row(e).array() += mean[e];
+  }
   return {.green_strain = components(fields.green_strain),
           .cauchy_stress = components(fields.cauchy_stress),
           .principal_stress = fields.principal_stress,

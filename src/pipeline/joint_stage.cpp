@@ -118,8 +118,9 @@ joint::JointModel read_joint_model(const JointRequest& request, const motion::Bo
   if (!request.femur.empty()) model.femur = io::read_surface(request.femur);
   model.X_IP = frames.pelvis.X_IB;
   model.X_IF = frames.femur.X_IB;
-  model.material.law = request.joint.law == "corotational"
-                           ? joint::MaterialLaw::corotational
+  model.material.law = request.joint.law == "corotational" ? joint::MaterialLaw::corotational
+                       : request.joint.law == "neo_hookean"
+                           ? joint::MaterialLaw::neo_hookean
                            : joint::MaterialLaw::st_venant_kirchhoff;
   model.material.youngs_modulus = request.joint.youngs_modulus;
   model.material.poissons_ratio = request.joint.poisson_ratio;

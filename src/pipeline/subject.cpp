@@ -98,8 +98,11 @@ void check_joint(const io::Table& table, const JointEntry& joint) {
           joint.youngs_modulus);
   require(joint.poisson_ratio > 0.0 && joint.poisson_ratio < 0.5, table.where("poisson"),
           " must be in (0, 0.5), got ", joint.poisson_ratio);
-  require(joint.law == "corotational" || joint.law == "st_venant_kirchhoff", table.where("law"),
-          " must be \"corotational\" or \"st_venant_kirchhoff\", got \"", joint.law, "\"");
+  require(joint.law == "corotational" || joint.law == "st_venant_kirchhoff" ||
+              joint.law == "neo_hookean",
+          table.where("law"),
+          " must be \"corotational\", \"st_venant_kirchhoff\" or \"neo_hookean\", got \"",
+          joint.law, "\"");
 }
 
 }  // namespace

@@ -8,8 +8,9 @@
 
 namespace coxa::joint {
 
-/// Elastic law of the cartilage.
-enum class MaterialLaw { st_venant_kirchhoff, corotational };
+/// Elastic law of the cartilage; the neo-Hookean law resists volume change patch by patch, so that
+/// it may be nearly incompressible.
+enum class MaterialLaw { st_venant_kirchhoff, corotational, neo_hookean };
 
 struct CartilageMaterial {
   MaterialLaw law = MaterialLaw::corotational;

@@ -39,7 +39,7 @@ struct JointEntry {
   std::optional<Vec3> direction;
   double youngs_modulus = 12.0;  ///< MPa
   double poisson_ratio = 0.42;
-  std::string law = "corotational";  ///< or st_venant_kirchhoff
+  std::string law = "corotational";  ///< or st_venant_kirchhoff, neo_hookean
 };
 
 struct MeshEntry {
