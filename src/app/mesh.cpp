@@ -7,7 +7,7 @@ namespace {
 
 struct MeshArguments {
   std::string surface, bone, method = "automatic", out;
-  int layers = 0;
+  int layers = 0, order = 1;
   meshing::MeshingOptions options;
 };
 
@@ -15,6 +15,7 @@ void run_mesh(const MeshArguments& arguments, Context& context) {
   pipeline::MeshRequest request{arguments.surface, arguments.bone, arguments.options};
   if (arguments.method == "medial") request.options.method = meshing::Method::medial;
   if (arguments.method == "lattice") request.options.method = meshing::Method::lattice;
+  if (arguments.order == 2) request.options.order = meshing::ElementOrder::ten_node;
   if (arguments.layers > 0) request.options.layers = arguments.layers;
   const auto record = pipeline::run_mesh_file(request, arguments.out, context.monitor());
   context.print_result(arguments.out, record);
@@ -41,6 +42,9 @@ void add_mesh(CLI::App& app, Context& context) {
       ->check(CLI::PositiveNumber);
   verb->add_option("--layers", arguments->layers, "layers through the thickness, 1 to 8")
       ->check(CLI::Range(1, 8));
+  verb->add_option("--order", arguments->order,
+                   "1: four-node elements, 2: ten-node ones with a curved boundary")
+      ->check(CLI::Range(1, 2));
   verb->add_option("--out", arguments->out, "VTU, Gmsh .msh, CalculiX .inp or FEBio .feb")
       ->required();
   verb->callback([arguments, &context] { run_mesh(*arguments, context); });

@@ -3,6 +3,7 @@
 #include "element_shape.h"
 #include "grid_topology.h"
 #include "tet_boundary.h"
+#include "worst_elements.h"
 
 #include <coxa/core/parallel.h>
 #include <coxa/geom/closest_point.h>
@@ -16,6 +17,8 @@ namespace coxa::meshing {
 namespace {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+constexpr double kMuchTooFar = 0.2;  // mm
 
 struct Place {
   Vec3 p = Vec3::Zero();
@@ -81,10 +84,16 @@ class Cover {
  private:
   bool try_node(Index v, const Vec3& target, double worst) {
     const Vec3 old = grid_.x[at(v)];
-    const double before = farthest_near(v), allowed = std::max(worst, energy_around(v));
+    const double before = farthest_near(v);
+    // what is much too far is worth elements nearer to the limits
+    const bool urgent = before > kMuchTooFar;
+    const double wanted = std::min(urgent ? 0.85 : 1.0, rank_around(v));
+    const double allowed = std::max(urgent ? 3.0 * worst : worst, energy_around(v));
     for (const double share : {1.0, 0.75, 0.5}) {
       grid_.x[at(v)] = old + share * (target - old);
-      if (energy_around(v) <= allowed && farthest_near(v) < 0.8 * before) return true;
+      if (energy_around(v) <= allowed && rank_around(v) >= wanted &&
+          farthest_near(v) < 0.8 * before)
+        return true;
     }
     grid_.x[at(v)] = old;
     return false;
@@ -97,6 +106,13 @@ class Cover {
       worst = std::max(worst, shape_energy(grid_.x[at(n[0])], grid_.x[at(n[1])], grid_.x[at(n[2])],
                                            grid_.x[at(n[3])]));
     }
+    return worst;
+  }
+
+  double rank_around(Index v) const {
+    double worst = kInfinity;
+    for (const Index t : grid_.around[at(v)])
+      worst = std::min(worst, element_rank(grid_, grid_.tets[at(t)]));
     return worst;
   }
 

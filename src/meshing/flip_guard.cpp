@@ -47,12 +47,6 @@ Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).cross(c - a).normalized();
 }
 
-bool has_face(const TetGrid& grid, Index a, Index b, Index c) {
-  return std::any_of(grid.around[at(a)].begin(), grid.around[at(a)].end(), [&](Index t) {
-    return contains(grid.tets[at(t)], b) && contains(grid.tets[at(t)], c);
-  });
-}
-
 // what both nodes are joined to must be joined to the edge between them (Dey et al. 1999)
 bool links_agree(const TetGrid& grid, Index a, Index b) {
   const EdgeRing ring = ring_around(grid, a, b);

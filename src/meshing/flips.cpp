@@ -77,6 +77,25 @@ void replace(TetGrid& grid, const std::vector<Index>& old, const std::vector<Tet
   for (const Tet& t : made) grid.add(t);
 }
 
+// Whether an edge or a face that the new elements bring is there already, away from the ring: where
+// the boundary folds over itself.
+bool repeats(const TetGrid& grid, const EdgeRing& ring, const std::vector<Tet>& made) {
+  const auto& r = ring.corners;
+  const auto beside = [&](Index p, Index q) {
+    for (std::size_t k = 0; k + (ring.closed ? 0 : 1) < r.size(); ++k) {
+      const Index a = r[k], b = r[(k + 1) % r.size()];
+      if ((a == p && b == q) || (a == q && b == p)) return true;
+    }
+    return false;
+  };
+  for (const Tet& t : made) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!beside(t[k], t[(k + 1) % 3]) && has_edge(grid, t[k], t[(k + 1) % 3])) return true;
+    if (has_face(grid, t[0], t[1], t[2])) return true;
+  }
+  return false;
+}
+
 bool remove_edge(TetGrid& grid, const FlipGuard& guard, Index a, Index b) {
   const EdgeRing ring = ring_around(grid, a, b);
   if (ring.corners.size() < 3 || ring.corners.size() > kLargestRing) return false;
@@ -85,6 +104,7 @@ bool remove_edge(TetGrid& grid, const FlipGuard& guard, Index a, Index b) {
   if (filling.worst() < old + kLeastGain) return false;
   if (!ring.closed && !guard.allows_swap(grid, a, b, ring.corners.front(), ring.corners.back()))
     return false;
+  if (repeats(grid, ring, filling.tets())) return false;
   replace(grid, ring.tets, filling.tets());
   return true;
 }

@@ -57,6 +57,12 @@ bool has_edge(const TetGrid& grid, Index a, Index b) {
                      [&](Index t) { return contains(grid.tets[at(t)], b); });
 }
 
+bool has_face(const TetGrid& grid, Index a, Index b, Index c) {
+  return std::any_of(grid.around[at(a)].begin(), grid.around[at(a)].end(), [&](Index t) {
+    return contains(grid.tets[at(t)], b) && contains(grid.tets[at(t)], c);
+  });
+}
+
 EdgeRing ring_around(const TetGrid& grid, Index a, Index b) {
   EdgeRing ring;
   std::vector<std::array<Index, 2>> steps;  // from corner to corner

@@ -20,6 +20,9 @@ bool node_on_boundary(const TetGrid& grid, Index v);
 /// Whether some element has the edge.
 bool has_edge(const TetGrid& grid, Index a, Index b);
 
+/// Whether some element has the face.
+bool has_face(const TetGrid& grid, Index a, Index b, Index c);
+
 /// The corners around an edge a-b, counter-clockwise seen from b.
 struct EdgeRing {
   std::vector<Index> corners;

@@ -1,5 +1,6 @@
 #include <coxa/meshing/mesh_surface.h>
 
+#include "mid_nodes.h"
 #include "sheet_mesh.h"
 #include "solid_mesh.h"
 
@@ -20,7 +21,6 @@ constexpr double kThick = 0.35;
 void check(const MeshingOptions& o) {
   require(!o.layers || (*o.layers >= 1 && *o.layers <= 8), "layers must be 1 to 8, got ",
           o.layers.value_or(0));
-  require(o.order == ElementOrder::four_node, "ten-node elements are not made yet");
   require(o.max_tets.value_or(101) > 100, "max_tets must be above 100, got ",
           o.max_tets.value_or(0));
   require(o.cell_per_thickness > 0, "cell_per_thickness must be > 0, got ", o.cell_per_thickness);
@@ -48,17 +48,9 @@ MeshingResult solid_because(const std::string& why, const SheetLikeness& likenes
   return result;
 }
 
-}  // namespace
-
-SheetLikeness sheet_likeness(const TriMesh& surface) {
-  require_closed_manifold(surface, "surface to fill with tetrahedra");
-  return likeness_of(medial::split_sides(surface));
-}
-
-MeshingResult mesh_surface(const TriMesh& surface, const MeshingOptions& options,
-                           const Monitor& monitor) {
-  check(options);
-  require_closed_manifold(surface, "surface to fill with tetrahedra");
+// four-node elements by the method asked for, or by the one that fits
+MeshingResult straight_mesh(const TriMesh& surface, const MeshingOptions& options,
+                            const Monitor& monitor) {
   if (options.method == Method::lattice) return mesh_solid(surface, options, monitor);
   const medial::SurfaceSides sides = medial::split_sides(surface);
   const SheetLikeness likeness = likeness_of(sides);
@@ -74,6 +66,32 @@ MeshingResult mesh_surface(const TriMesh& surface, const MeshingOptions& options
     return solid_because(join_text("the medial grid failed: ", error.what()), likeness, surface,
                          options, monitor);
   }
+}
+
+void add_mid_nodes(const TriMesh& surface, MeshingResult& result) {
+  const TriangleTree tree(surface.points, surface.triangles);
+  const MidNodeReport made = update_to_ten_nodes(result.mesh, tree);
+  result.report.least_jacobian = made.least_ratio;
+  if (made.n_relaxed > 0)
+    result.report.notes.push_back(
+        join_text(made.n_relaxed, " of ", made.n_curved,
+                  " mid-edge nodes at the boundary were drawn back to keep elements valid"));
+}
+
+}  // namespace
+
+SheetLikeness sheet_likeness(const TriMesh& surface) {
+  require_closed_manifold(surface, "surface to fill with tetrahedra");
+  return likeness_of(medial::split_sides(surface));
+}
+
+MeshingResult mesh_surface(const TriMesh& surface, const MeshingOptions& options,
+                           const Monitor& monitor) {
+  check(options);
+  require_closed_manifold(surface, "surface to fill with tetrahedra");
+  MeshingResult result = straight_mesh(surface, options, monitor);
+  if (options.order == ElementOrder::ten_node) add_mid_nodes(surface, result);
+  return result;
 }
 
 }  // namespace coxa::meshing

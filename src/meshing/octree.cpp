@@ -88,13 +88,16 @@ bool is_flat(const std::vector<Polygon>& pieces, double flatness) {
 
 Octree::Octree(const TriMesh& surface, const OctreeOptions& options) {
   const Bounds box = bounds(surface.points);
+  constexpr int kMostLevels = 16;
   const double wanted = 1.1 * (box.high - box.low).maxCoeff();
   int levels = 2;
-  while (levels < 14 && std::ldexp(wanted, -levels) >= 2.0 * options.smallest) ++levels;
+  while (levels < kMostLevels && std::ldexp(options.smallest, levels) < wanted) ++levels;
+  // the root is larger than needed, so that the finest cubes are as small as asked for
+  const double edge = std::max(wanted, std::ldexp(options.smallest, levels));
   OctreeCell root;
   root.size = 2 << levels;
-  unit_ = wanted / root.size;
-  origin_ = 0.5 * (box.low + box.high) - Vec3::Constant(0.5 * wanted);
+  unit_ = edge / root.size;
+  origin_ = 0.5 * (box.low + box.high) - Vec3::Constant(0.5 * edge);
   cells_.push_back(root);
   refine(surface, options);
   balance();

@@ -22,8 +22,8 @@ struct OctreeCell {
 struct OctreeOptions {
   double flatness = 0.15;  ///< mm, > 0: a cube is split where the surface in it leaves its plane by
                            ///< more, or folds back
-  double smallest = 0.3;   ///< mm, > 0: edges do not get shorter than this …
-  double largest = 10.0;   ///< mm, > 0: … nor longer, where the surface passes
+  double smallest = 0.3;   ///< mm, > 0: edge of the finest cubes
+  double largest = 10.0;   ///< mm, > 0: of the largest ones that the surface passes through
 };
 
 /// Octree whose cubes follow the shape of a surface; cubes that share a face or an edge differ by a

@@ -1,7 +1,9 @@
 #include "sheet_mesh.h"
 
+#include "cover.h"
 #include "crease_snapping.h"
 #include "extrude.h"
+#include "flips.h"
 #include "mending.h"
 #include "node_freedom.h"
 #include "node_smoothing.h"
@@ -84,6 +86,16 @@ void bring_back_inverted(Extrusion& made, const SlideGuide& guide, MeshingReport
         join_text(dropped, " crumpled cells were left out, of ", made.cells.size()));
 }
 
+// ridges and tips that are cut off; flips would leave the layers asked for
+void cover_and_raise(TetGrid& grid, const TriMesh& surface, const SlideGuide& guide, bool flips) {
+  constexpr int kRounds = 3;
+  for (int k = 0; k < kRounds; ++k) {
+    if (cover_far_places(grid, surface, {}) == 0) break;
+    if (flips) flip_poor(grid, guide, {.below = 0.35, .collapse = false});
+    raise_worst(grid, guide);
+  }
+}
+
 }  // namespace
 
 MeshingResult mesh_sheet(const TriMesh& surface, const medial::SurfaceSides& sides,
@@ -100,8 +112,15 @@ MeshingResult mesh_sheet(const TriMesh& surface, const medial::SurfaceSides& sid
   Extrusion made = extrude_within(faces, guide, options, part_of(monitor, "medial grid", 0.0, 0.6));
   bring_back_inverted(made, guide, result.report);
   improve(made.grid, guide, options.improvement_rounds, part_of(monitor, "improve", 0.6, 1.0));
+  if (!options.layers && options.improvement_rounds > 0) {
+    for (int k = 0; k < 3; ++k) {
+      flip_poor(made.grid, guide, {.below = 0.5});
+      update_positions(made.grid, guide, 2.0);
+    }
+  }
   if (options.improvement_rounds > 0) raise_freely(made.grid, guide);
   draw_back(made.grid, guide);
+  if (options.improvement_rounds > 0) cover_and_raise(made.grid, surface, guide, !options.layers);
   const Index dropped = drop_poor_elements(made.grid);
   if (dropped > 0) {
     result.report.notes.push_back(

@@ -182,6 +182,8 @@ void add_figures(const meshing::MeshingResult& result, const std::string& prefix
   record.figures[prefix + "dihedral_min_deg"] = degrees(report.quality.dihedral_min);
   record.figures[prefix + "dihedral_max_deg"] = degrees(report.quality.dihedral_max);
   record.figures[prefix + "rim_rounding_mm"] = report.rim_rounding;
+  if (result.mesh.mid_nodes.rows() > 0)
+    record.figures[prefix + "least_jacobian_ratio"] = report.least_jacobian;
   for (const std::string& note : report.notes) record.warnings.push_back(prefix + note);
 }
 

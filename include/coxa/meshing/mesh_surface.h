@@ -42,7 +42,9 @@ struct MeshingReport {
   int layers = 0;                     ///< through the sheet; 0 for a lattice mesh
   double rim_rounding = 0.0;          ///< mm: largest distance the rim was moved inwards
   TetQuality quality;                 ///< of the four-corner elements
-  std::vector<std::string> notes;     ///< what the caller should know, in plain words
+  /// Of ten-node elements: least Jacobian determinant over that of the element's corners.
+  double least_jacobian = 1.0;
+  std::vector<std::string> notes;  ///< what the caller should know, in plain words
 };
 
 struct MeshingResult {
