@@ -8,6 +8,12 @@
 #include "frame_figures.h"
 
 namespace coxa::joint {
+namespace {
+
+// discs are laid around samples of at least this share of the largest pressure
+constexpr double kHigh = 0.5;
+
+}  // namespace
 
 std::vector<collide::ContactSample> samples_in_contact(const HipSystem& system,
                                                        const HipState& state) {
@@ -73,11 +79,14 @@ double patch_peak(const std::vector<collide::ContactSample>& samples, double are
     // where the surface ends within the disc, the rest of the patch carries nothing
     return force / std::max(covered, 0.75 * area);
   };
+  double largest = 0.0;
+  for (const auto& sample : samples) largest = std::max(largest, sample.pressure);
   return parallel_reduce(
       static_cast<std::int64_t>(samples.size()), 0.0,
       [&](Index s) {
         const auto& sample = samples[static_cast<std::size_t>(s)];
-        return sample.pressure > 0.0 ? mean_around(sample.point) : 0.0;
+        const bool high = sample.pressure > 0.0 && sample.pressure >= kHigh * largest;
+        return high ? mean_around(sample.point) : 0.0;
       },
       [](double a, double b) { return std::max(a, b); });
 }

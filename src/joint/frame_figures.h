@@ -19,7 +19,8 @@ std::vector<collide::ContactSample> samples_in_contact(const HipSystem& system,
 /// Pressure below which `share` of the samples' area lies, MPa; 0 without samples.
 double pressure_percentile(const std::vector<collide::ContactSample>& samples, double share);
 
-/// Greatest mean pressure over a disc of `area` mm² around any pressed sample, MPa.
+/// Greatest mean pressure over a disc of `area` mm² around a sample that has at least half the
+/// largest pressure, MPa.
 double patch_peak(const std::vector<collide::ContactSample>& samples, double area);
 
 /// Forces on the held bone-side nodes, elastic and of contact right on them, summed: socket and
