@@ -18,7 +18,8 @@ struct CoverOptions {
 /// @returns how many were drawn
 Index cover_far_places(TetGrid& grid, const TriMesh& surface, const CoverOptions& options);
 
-/// Largest distance of vertices and edge midpoints of the surface to the boundary of the grid, mm.
-double farthest_place(const TetGrid& grid, const TriMesh& surface);
+/// Largest distance between the surface and the boundary of the grid, mm, by the vertices and edge
+/// middles of the surface and the edge middles and centroids of the boundary's facets.
+double envelope_error(const TetGrid& grid, const TriMesh& surface);
 
 }  // namespace coxa::meshing

@@ -60,11 +60,20 @@ MeshingResult straight_mesh(const TriMesh& surface, const MeshingOptions& option
     return solid_because(likeness.why_not, likeness, surface, options, monitor);
   }
   try {
-    return mesh_sheet(surface, sides, options, monitor);
+    MeshingResult sheet = mesh_sheet(surface, sides, options, monitor);
+    if (!may_choose || options.layers || options.max_tets || meets_limits(sheet.report))
+      return sheet;
+    MeshingResult solid = solid_because(
+        join_text("the medial grid gave a mean aspect ratio of ", sheet.report.quality.aspect_mean,
+                  " and an envelope error of ", sheet.report.envelope, " mm"),
+        likeness, surface, options, monitor);
+    return meets_limits(solid.report) ? solid : sheet;
   } catch (const Error& error) {
     if (!may_choose || error.code() == ErrorCode::cancelled) throw;
-    return solid_because(join_text("the medial grid failed: ", error.what()), likeness, surface,
-                         options, monitor);
+    MeshingResult solid = solid_because(join_text("the medial grid failed: ", error.what()),
+                                        likeness, surface, options, monitor);
+    solid.report.medial_failed = true;
+    return solid;
   }
 }
 
@@ -79,6 +88,13 @@ void add_mid_nodes(const TriMesh& surface, MeshingResult& result) {
 }
 
 }  // namespace
+
+bool meets_limits(const MeshingReport& report) {
+  const TetQuality& q = report.quality;
+  return q.aspect_mean >= 0.72 && q.aspect_p05 >= 0.5 && q.aspect_min >= 0.15 &&
+         q.dihedral_min >= radians(10.0) && q.dihedral_max <= radians(165.0) &&
+         report.envelope <= 0.3;
+}
 
 SheetLikeness sheet_likeness(const TriMesh& surface) {
   require_closed_manifold(surface, "surface to fill with tetrahedra");

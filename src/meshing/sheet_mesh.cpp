@@ -134,6 +134,7 @@ MeshingResult mesh_sheet(const TriMesh& surface, const medial::SurfaceSides& sid
   result.report.sheetness = sides.sheetness;
   result.report.layers = options.layers.value_or(1);
   result.report.rim_rounding = guide.largest_rounding();
+  result.report.envelope = envelope_error(made.grid, surface);
   result.mesh = to_tet_mesh(made.grid);
   result.report.quality = tet_quality(result.mesh.points, result.mesh.tets);
   return result;

@@ -75,25 +75,44 @@ void draw_to_surface(TetGrid& grid, const SlideGuide& guide) {
   }
 }
 
+enum class Connections { may_change, stay };
+
 void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface, int rounds,
-             const Monitor& monitor) {
+             Connections connections, const Monitor& monitor) {
   constexpr int kMeanRounds = 4;  // first the average, then the worst
+  constexpr int kCoverRounds = 3;
+  const auto flip = [&](double below) {
+    if (connections == Connections::may_change) flip_poor(grid, guide, {.below = below});
+  };
   for (int k = 0; k < rounds; ++k) {
     monitor.check_cancelled();
     monitor.progress("improve", static_cast<double>(k) / rounds);
     update_positions(grid, guide, k < kMeanRounds ? 1.0 : 3.0);
     draw_to_surface(grid, guide);
-    if (k > 0) flip_poor(grid, guide, {.below = 0.5});
+    if (k > 0) flip(0.5);
   }
-  constexpr int kCoverRounds = 3;
   for (int k = 0; k < kCoverRounds && cover_far_places(grid, surface, {}) > 0; ++k) {
-    flip_poor(grid, guide, {.below = 0.5});
+    flip(0.5);
     update_positions(grid, guide, 3.0);
   }
   for (int k = 0; k < rounds && raise_worst(grid, guide) > 0; ++k) {
     monitor.check_cancelled();
-    flip_poor(grid, guide, {.below = 0.35});
+    flip(0.35);
   }
+  if (rounds > 0) raise_freely(grid, guide);
+  draw_back(grid, guide);
+}
+
+void add_notes(const TriMesh& surface, double flatness, MeshingReport& report) {
+  constexpr double kWhole = 0.95;
+  if (flatness > kFlatness)
+    report.notes.push_back(join_text("the elements allowed follow the surface to within about ",
+                                     flatness, " mm only, instead of ", kFlatness, " mm"));
+  const double share = report.quality.volume / volume(surface);
+  if (share < kWhole)
+    report.notes.push_back(
+        join_text("only ", 100.0 * share,
+                  " % of the body is filled: it is thinner than the elements allowed"));
 }
 
 }  // namespace
@@ -107,20 +126,24 @@ MeshingResult mesh_solid(const TriMesh& surface, const MeshingOptions& options,
   TetGrid grid = fill_within(surface, tree, options.max_tets.value_or(kMostTets), flatness,
                              part_of(monitor, "lattice", 0.0, 0.4));
   draw_to_surface(grid, guide);
-  improve(grid, guide, surface, options.improvement_rounds, part_of(monitor, "improve", 0.4, 1.0));
-  if (options.improvement_rounds > 0) raise_freely(grid, guide);
-  draw_back(grid, guide);
-  if (const Index dropped = drop_poor_elements(grid); dropped > 0)
+  const TetGrid start = grid;
+  const Monitor rest = part_of(monitor, "improve", 0.4, 1.0);
+  improve(grid, guide, surface, options.improvement_rounds, Connections::may_change, rest);
+  const Index dropped = drop_poor_elements(grid);
+  if (!pinched_nodes(grid).empty()) {
+    // where thin parts fold over themselves changed connections may touch: keep the lattice's
+    grid = start;
+    improve(grid, guide, surface, options.improvement_rounds, Connections::stay, rest);
+  } else if (dropped > 0) {
     result.report.notes.push_back(
         join_text(dropped, " poor elements at the boundary were dropped"));
-  if (flatness > kFlatness)
-    result.report.notes.push_back(
-        join_text("the elements allowed follow the surface to within about ", flatness,
-                  " mm only, instead of ", kFlatness, " mm"));
+  }
   result.report.method = Method::lattice;
+  result.report.envelope = envelope_error(grid, surface);
   result.mesh = to_tet_mesh(grid);
   std::fill(result.mesh.facet_tags.begin(), result.mesh.facet_tags.end(), FacetTag::untagged);
   result.report.quality = tet_quality(result.mesh.points, result.mesh.tets);
+  add_notes(surface, flatness, result.report);
   return result;
 }
 

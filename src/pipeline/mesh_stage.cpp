@@ -126,25 +126,26 @@ std::optional<meshing::MeshingResult> filled_otherwise(const TriMesh& surface,
 /// or else like a solid body.
 meshing::MeshingResult filled(const TriMesh& surface, const meshing::MeshingOptions& options,
                               const std::string& name, Record& record, const Monitor& monitor) {
-  meshing::MeshingOptions as_sheet = options;
-  if (options.method == meshing::Method::automatic && meshing::sheet_likeness(surface).is_sheet())
-    as_sheet.method = meshing::Method::medial;
   std::string why;
+  std::optional<meshing::MeshingResult> result;
   try {
-    return meshing::mesh_surface(surface, as_sheet, monitor);
+    result = meshing::mesh_surface(surface, options, monitor);
+    if (!result->report.medial_failed) return std::move(*result);
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::below_quality && error.code() != ErrorCode::bad_mesh) throw;
+    const bool may_help =
+        error.code() == ErrorCode::below_quality || error.code() == ErrorCode::bad_mesh;
+    if (!may_help || options.method == meshing::Method::lattice) throw;
     why = error.what();
   }
-  if (as_sheet.method == meshing::Method::medial) {
-    auto result = filled_otherwise(surface, as_sheet, name, why, record, monitor);
-    if (result) return std::move(*result);
-  }
-  if (options.method != meshing::Method::automatic) fail(ErrorCode::below_quality, name, ": ", why);
-  as_sheet.method = meshing::Method::lattice;
-  meshing::MeshingResult result = meshing::mesh_surface(surface, as_sheet, monitor);
-  result.report.notes.push_back("filled from a lattice, since the medial grid failed: " + why);
-  return result;
+  meshing::MeshingOptions as_sheet = options;
+  as_sheet.method = meshing::Method::medial;
+  if (result) why = result->report.notes.front();
+  auto other = filled_otherwise(surface, as_sheet, name, why, record, monitor);
+  const bool better = other && (!result || options.layers || meets_limits(other->report) ||
+                                !meets_limits(result->report));
+  if (better) return std::move(*other);
+  if (!result) fail(ErrorCode::below_quality, name, ": ", why);
+  return std::move(*result);
 }
 
 std::string method_name(meshing::Method method) {
@@ -182,6 +183,7 @@ void add_figures(const meshing::MeshingResult& result, const std::string& prefix
   record.figures[prefix + "dihedral_min_deg"] = degrees(report.quality.dihedral_min);
   record.figures[prefix + "dihedral_max_deg"] = degrees(report.quality.dihedral_max);
   record.figures[prefix + "rim_rounding_mm"] = report.rim_rounding;
+  record.figures[prefix + "envelope_max_mm"] = report.envelope;
   if (result.mesh.mid_nodes.rows() > 0)
     record.figures[prefix + "least_jacobian_ratio"] = report.least_jacobian;
   for (const std::string& note : report.notes) record.warnings.push_back(prefix + note);
