@@ -35,6 +35,7 @@ Rows energy();                // n
 Rows curves();                // p
 Rows viscosity();             // q
 Rows strong_compression();    // r
+Rows slope();                 // s
 
 /// The rod of (a) and (b) in its straight shape: clamped at x = 0.
 TetMesh rod_mesh();

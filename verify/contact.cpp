@@ -1,5 +1,5 @@
 // Contact between surfaces: the patch test over meshes that do not match, and a ball in its cup.
-#include <coxa/collide/surface_contact.h>
+#include <coxa/collide/contact_friction.h>
 #include <coxa/core/error.h>
 #include <coxa/core/rng.h>
 #include <coxa/dynamics/forces.h>
@@ -186,6 +186,78 @@ Rows ball_in_cup() {
         {join_text("mean nodal pressure, ", 10 * band, " to ", 10 * (band + 1), " degrees"),
          p0 * std::cos(radians(angle / count)), sum / count, 0.05, "pressure, MPa", angle / count});
   }
+  return rows;
+}
+
+namespace {
+
+/// Velocity down the slope, mm/s, of a block of 10 × 10 × 2 mm that was let go `time` s before on a
+/// rigid slope.
+double slide(double slope, double coefficient, double time) {
+  constexpr double kGravity = 9810.0, kDensity = 1.1e-9, kStiffness = 1.0;  // mm/s², t/mm³, MPa/mm
+  constexpr int kSteps = 200;
+  const TetMesh mesh = fem::test::block(4, 4, 1, Vec3(2.5, 2.5, 2.0));
+  const auto faces =
+      faces_where(fem::test::with_mid_nodes(mesh), [](const Vec3& X) { return X[2] < 1e-9; });
+  Triangles bottom = faces.leftCols(3);
+  for (Index f = 0; f < bottom.rows(); ++f) {
+    const auto corner = [&](int k) { return Vec3(mesh.points.row(bottom(f, k))); };
+    if ((corner(1) - corner(0)).cross(corner(2) - corner(0))[2] > 0.0)
+      std::swap(bottom(f, 1), bottom(f, 2));
+  }
+  TriMesh ground;
+  ground.points.resize(4, 3);
+  ground.points << -50, -50, 0, 100, -50, 0, 100, 100, 0, -50, 100, 0;
+  ground.triangles.resize(2, 3);
+  ground.triangles << 0, 1, 2, 0, 2, 3;
+
+  const fem::ElasticForce elastic(mesh, fem::make_corotational(fem::lame_from(10.0, 0.3)));
+  collide::SurfaceContact contact(collide::make_particle_surface(bottom), ground,
+                                  {.stiffness = kStiffness, .rule = collide::ContactRule::nodal});
+  collide::ContactFriction friction(contact, coefficient, kStiffness);
+  dynamics::Particles particles{fem::test::stacked(mesh.points), VecX::Zero(mesh.points.size()),
+                                fem::lumped_masses(mesh, kDensity, mesh.n_vertices())};
+  VecX load(mesh.points.size());
+  for (Index i = 0; i < mesh.n_vertices(); ++i)
+    load.segment<3>(3 * i) =
+        particles.mass[i] * kGravity * Vec3(std::sin(slope), 0.0, -std::cos(slope));
+  const dynamics::ConstantForce weight(load);
+  // so deep that the ground carries the block from the start
+  const double depth = particles.mass.sum() * kGravity * std::cos(slope) / (100.0 * kStiffness);
+  for (Index i = 0; i < mesh.n_vertices(); ++i) particles.x[3 * i + 2] -= depth;
+
+  dynamics::Stepper stepper(mesh.n_vertices(), {&elastic, &weight, &contact, &friction});
+  for (int step = 0; step < kSteps; ++step) {
+    contact.update_pairs(particles.x);
+    friction.begin_step(particles.x);
+    stepper.update_pattern();
+    stepper.update_step(particles, {},
+                        {.integrator = dynamics::Integrator::backward_euler,
+                         .time_step = time / kSteps,
+                         .newton_iterations = 8,
+                         .linear = {.tolerance = 1e-10}});
+    friction.end_step(particles.x);
+  }
+  double momentum = 0.0;
+  for (Index i = 0; i < mesh.n_vertices(); ++i) momentum += particles.mass[i] * particles.v[3 * i];
+  return momentum / particles.mass.sum();
+}
+
+}  // namespace
+
+Rows slope() {
+  constexpr double kTime = 0.1, kGravity = 9810.0;
+  Rows rows;
+  for (const double degrees : {25.0, 30.0, 40.0, 55.0}) {
+    const double angle = radians(degrees);
+    rows.push_back({join_text("slope ", degrees, " degrees, coefficient 0.3: mm/s after 0.1 s"),
+                    kGravity * kTime * (std::sin(angle) - 0.3 * std::cos(angle)),
+                    slide(angle, 0.3, kTime), 0.01, "velocity after 0.1 s, mm/s", degrees});
+  }
+  // below atan(0.3) = 16.7 degrees it stays where it is
+  rows.push_back({"slope 15 degrees, coefficient 0.3: over that without friction", 0.0,
+                  slide(radians(15.0), 0.3, kTime) / (kGravity * kTime * std::sin(radians(15.0))),
+                  1e-3});
   return rows;
 }
 

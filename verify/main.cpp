@@ -41,7 +41,8 @@ const std::vector<Case>& cases() {
       {'n', "energy and frequency of free vibration", energy},
       {'p', "strain-stress curves, unrotated and rotated mode", curves},
       {'q', "viscosity by rate curves", viscosity},
-      {'r', "strong compression", strong_compression}};
+      {'r', "strong compression", strong_compression},
+      {'s', "friction on a slope", slope}};
   return all;
 }
 
