@@ -1,6 +1,8 @@
+#include <coxa/core/error.h>
 #include <coxa/io/files.h>
 #include <coxa/io/motion_files.h>
 #include <coxa/io/track_model.h>
+#include <coxa/pipeline/frame_picture.h>
 #include <coxa/pipeline/motion_stage.h>
 #include <coxa/pipeline/stage.h>
 
@@ -16,11 +18,19 @@ struct TrackArguments {
   std::string markers, model, config, out;
 };
 
-/// The hip model of `--model DIR`: its hip_model.json; a file is taken as it is.
-fs::path model_file(const TrackArguments& arguments) {
-  if (arguments.model.empty()) return arguments.config;
-  return fs::is_directory(arguments.model) ? fs::path(arguments.model) / "hip_model.json"
-                                           : fs::path(arguments.model);
+/// The hip model of `--model`: a file as it is; of a folder its hip_model.json, else the only JSON
+/// file there.
+fs::path model_file(const std::string& argument) {
+  const fs::path path = argument;
+  if (argument.empty() || !fs::is_directory(path)) return path;
+  if (fs::exists(path / "hip_model.json")) return path / "hip_model.json";
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(path)) {
+    if (io::extension_of(entry.path()) == ".json") found.push_back(entry.path());
+  }
+  require(found.size() == 1, argument, " holds no hip_model.json, and ", found.size(),
+          " other JSON files; name the file of the hip model");
+  return found.front();
 }
 
 void add_figures(const motion::TrackedRecording& tracked, pipeline::Record& record) {
@@ -44,16 +54,23 @@ void run_track(const TrackArguments& arguments, Context& context) {
   pipeline::Record wanted;
   wanted.verb = "track";
   wanted.inputs["markers"] = io::sha256_of_path(arguments.markers);
-  const fs::path model = model_file(arguments), out = arguments.out;
+  const fs::path model = model_file(arguments.model), out = arguments.out;
+  if (!arguments.config.empty()) wanted.inputs["config"] = io::sha256_of_path(arguments.config);
   if (!model.empty()) wanted.inputs["model"] = io::sha256_of_path(model);
   const auto body = [&](const fs::path& partial, pipeline::Record& record) {
-    const auto tracked = pipeline::track_markers(arguments.markers, model, {}, monitor);
+    const auto tracked = pipeline::track_markers(
+        {.markers = arguments.markers, .config = arguments.config, .model = model}, monitor);
     if (io::extension_of(out) == ".mot") {
       io::write_opensim_motion(partial / out.filename(), tracked.result.motion, tracked.model.side);
     } else {
       io::write_motion(partial / out.filename(), tracked.result.motion);
     }
     io::write_residuals(partial / (io::stem_of(out) + "_residuals.csv"), tracked.result);
+    io::write_bytes(partial / (io::stem_of(out) + "_angles.svg"),
+                    view::line_plot_svg(pipeline::angle_plot(tracked.result.motion)));
+    if (!tracked.cleaned.markers.events.empty())
+      io::write_events(partial / (io::stem_of(out) + "_events.csv"),
+                       tracked.cleaned.markers.events);
     add_figures(tracked, record);
     for (const std::string& text : record.warnings) monitor.warn(text);
   };
@@ -68,14 +85,13 @@ void add_track(CLI::App& app, Context& context) {
   verb->add_option("--markers", arguments->markers, "C3D, TRC or CSV")
       ->required()
       ->check(CLI::ExistingFile);
-  auto* model = verb->add_option("--model", arguments->model,
-                                 "hip model: joint centre and markers on the bones (JSON, or a "
-                                 "folder with hip_model.json)")
-                    ->check(CLI::ExistingPath);
+  verb->add_option("--model", arguments->model,
+                   "hip model: joint centre and markers on the bones (JSON, or a "
+                   "folder with hip_model.json); wins over the configuration's")
+      ->check(CLI::ExistingPath);
   verb->add_option("--config", arguments->config,
                    "how the recording is to be read and tracked (TOML, docs/motion.md)")
-      ->check(CLI::ExistingFile)
-      ->excludes(model);
+      ->check(CLI::ExistingFile);
   verb->add_option("--out", arguments->out, "CSV, or OpenSim .mot")->required();
   verb->callback([arguments, &context] { run_track(*arguments, context); });
 }

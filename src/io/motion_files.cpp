@@ -3,6 +3,7 @@
 #include <coxa/core/error.h>
 #include <coxa/io/files.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -136,6 +137,24 @@ void write_residuals(const std::filesystem::path& path, const motion::TrackResul
     }
     text << "\n";
   }
+  write_bytes(path, text.str());
+}
+
+void write_events(const std::filesystem::path& path,
+                  const std::vector<motion::MarkerEvent>& events) {
+  const auto cell = [](std::string words) {
+    for (char& c : words) {
+      if (c == ',' || c == '\n' || c == '\r' || c == '"') c = ' ';
+    }
+    return words;
+  };
+  std::vector<motion::MarkerEvent> sorted = events;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.time < b.time; });
+  std::ostringstream text;
+  text << std::setprecision(10) << "time_s,label,context\n";
+  for (const motion::MarkerEvent& event : sorted)
+    text << event.time << "," << cell(event.label) << "," << cell(event.context) << "\n";
   write_bytes(path, text.str());
 }
 

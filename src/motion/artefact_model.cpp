@@ -1,6 +1,7 @@
 #include "artefact_model.h"
 
 #include <coxa/core/parallel.h>
+#include <coxa/geom/fits.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +13,10 @@ namespace coxa::motion {
 namespace {
 
 // Markers over moving tissue share their movement: the part they have in common has half the
-// variance of what each has of its own. Of the distance of a logarithm of a variance from the mean
-// 0.7 is kept, because a trial holds few independent patterns of artefact. Between 0.3 and 1, and
-// 0.5 and 0.85, results hardly change.
-constexpr double kShared = 0.5, kKept = 0.7;
+// variance of what each has of its own; between 0.3 and 1 results hardly change.
+constexpr double kShared = 0.5;
+// Of the distance of a logarithm of an axis' variance from their mean so much is kept.
+constexpr double kKeptOfAxes = 0.7;
 constexpr double kSmallestVariance = 1e-6;  // mm²
 
 // frames that show the same markers
@@ -89,9 +90,28 @@ void update_shares(const ThighObservations& thigh, const FrameGroup& group,
   }
 }
 
-VecX drawn_together(const VecX& variance) {
+// variances nearer to their common mean: `kept` of the distance of their logarithms is left
+VecX drawn_together(const VecX& variance, double kept) {
   const double mean = std::exp(variance.array().log().mean());
-  return mean * (variance.array() / mean).pow(kKept);
+  return mean * (variance.array() / mean).pow(kept);
+}
+
+// About how many axes the thigh turns: participation ratio of its rotations about their mean, 1 to
+// 3. A movement about one axis shows each marker's artefact once, however many frames it has.
+double axes_of_movement(const std::vector<Mat3>& R, const std::vector<bool>& valid) {
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t f = 0; f < R.size(); ++f) {
+    if (valid[f]) sum += R[f];
+  }
+  const Mat3 middle = nearest_rotation(sum);
+  Mat3 spread = Mat3::Zero();
+  for (std::size_t f = 0; f < R.size(); ++f) {
+    if (!valid[f]) continue;
+    const Vec3 w = rotation_vector(middle.transpose() * R[f]);
+    spread += w * w.transpose();
+  }
+  const double squares = spread.squaredNorm();
+  return squares > 0 ? spread.trace() * spread.trace() / squares : 1.0;
 }
 
 // variances times what they fall short by, at most halved or doubled
@@ -129,17 +149,22 @@ ArtefactModel estimate_artefact(const ThighObservations& thigh, const KnownError
   constexpr double kFirstVariance = 35.0;  // mm²
   const Index K = thigh.n_markers();
   const std::vector<FrameGroup> groups = frame_groups(thigh);
-  std::vector<Mat3> R = estimate_rigid(thigh).R_PF;
+  const PoseEstimate rigid = estimate_rigid(thigh);
+  std::vector<Mat3> R = rigid.R_PF;
+  // half of what tells markers apart is believed where the thigh turns about one axis only, 4/5
+  // where it turns as much about two
+  const double axes = axes_of_movement(R, rigid.valid), kept = axes * axes / (1.0 + axes * axes);
   ArtefactModel model{.marker = VecX::Constant(K, kFirstVariance)};
   while (!model.converged && model.iterations < kMaxIterations) {
     const AxisCovariance artefact = model.covariance();
     Shares shares{MatX::Zero(K, 3), MatX::Zero(K, 3)};
     for (const FrameGroup& group : groups) update_shares(thigh, group, artefact, known, R, shares);
     const VecX marker = drawn_together(
-        rescaled(model.marker, shares.shown.rowwise().sum(), shares.expected.rowwise().sum()));
+        rescaled(model.marker, shares.shown.rowwise().sum(), shares.expected.rowwise().sum()),
+        kept);
     VecX axis = rescaled(model.axis, shares.shown.colwise().sum().transpose(),
                          shares.expected.colwise().sum().transpose());
-    axis = drawn_together(axis / std::exp(axis.array().log().mean()));
+    axis = drawn_together(axis / std::exp(axis.array().log().mean()), kKeptOfAxes);
     const double change = std::max((marker.array() / model.marker.array() - 1.0).abs().maxCoeff(),
                                    (axis.array() / model.axis.array() - 1.0).abs().maxCoeff());
     model.marker = marker;

@@ -8,6 +8,7 @@
 #include <coxa/io/motion_files.h>
 #include <coxa/io/movement_files.h>
 #include <coxa/io/track_config.h>
+#include <coxa/io/track_model.h>
 #include <coxa/motion/clinical_pattern.h>
 #include <coxa/pipeline/completed_bones.h>
 #include <coxa/pipeline/frame_picture.h>
@@ -101,8 +102,9 @@ motion::HipMotion make_motion(const Subject& subject, const fs::path& folder,
     const auto pattern = io::read_pattern(movement_file(subject.motion.pattern));
     return motion::make_movement(pattern, subject.side, {.n_frames = subject.motion.frames});
   }
-  const motion::TrackedRecording tracked =
-      track_markers(subject.motion.markers, subject.motion.config, subject.side, monitor);
+  const motion::TrackedRecording tracked = track_markers(
+      {.markers = subject.motion.markers, .config = subject.motion.config, .side = subject.side},
+      monitor);
   io::write_motion(folder / "tracked.csv", tracked.result.motion);
   io::write_residuals(folder / "residuals.csv", tracked.result);
   return thinned(tracked.result.motion, subject.motion);
@@ -134,15 +136,20 @@ void write_centres(const fs::path& path, const motion::JointCentreResult& result
 
 }  // namespace
 
-motion::TrackedRecording track_markers(const fs::path& markers, const fs::path& config,
-                                       std::optional<Side> side, const Monitor& monitor) {
+motion::TrackedRecording track_markers(const TrackInputs& inputs, const Monitor& monitor) {
   io::TrackConfig setup;
-  if (!config.empty()) setup = io::read_track_config(config);
-  if (config.empty() && side) setup.setup.side = *side;
-  require(!side || setup.setup.side == *side, config.string(), " is for the ",
+  if (!inputs.config.empty()) setup = io::read_track_config(inputs.config);
+  if (!inputs.model.empty()) {
+    setup.setup.model = io::read_hip_model(inputs.model);
+    setup.setup.side = setup.setup.model->side;
+  }
+  const bool nothing_known = inputs.config.empty() && inputs.model.empty();
+  if (nothing_known && inputs.side) setup.setup.side = *inputs.side;
+  require(!inputs.side || setup.setup.side == *inputs.side,
+          (inputs.model.empty() ? inputs.config : inputs.model).string(), " is for the ",
           setup.setup.side == Side::left ? "left" : "right",
           " hip, the subject file for the other");
-  const motion::MarkerData recording = io::read_markers(markers);
+  const motion::MarkerData recording = io::read_markers(inputs.markers);
   for (const std::string& text : recording.warnings) monitor.warn(text);
   if (!setup.neutral_trial)
     return motion::track_recording(recording, nullptr, setup.setup, monitor);

@@ -107,6 +107,23 @@ TEST_F(MotionFiles, HipModelNamesTheKeyThatIsWrong) {
   EXPECT_NE(error_text([&] { read_hip_model(folder_ / "m.json"); }).find("not a JSON object"),
             std::string::npos);
 }
+TEST_F(MotionFiles, EventsAreWrittenInTheOrderOfTime) {
+  write_events(folder_ / "e.csv",
+               {{"Foot Off", "Right", 1.25}, {"Foot Strike, first", "Left", 0.5}});
+  EXPECT_EQ(read_bytes(folder_ / "e.csv"),
+            "time_s,label,context\n0.5,Foot Strike  first,Left\n1.25,Foot Off,Right\n");
+}
+TEST_F(MotionFiles, GaitRepeatsAfterItsCycle) {
+  const auto pattern = read_pattern(fs::path(COXA_SOURCE_DIR) / "data" / "movements" / "gait.toml");
+  const auto motion = motion::make_movement(pattern, Side::right, {.rate = 100, .cycles = 2});
+  ASSERT_EQ(motion.n_frames(), 201);
+  for (std::size_t f = 0; f <= 100; ++f)
+    EXPECT_NEAR(motion.angles[f].flexion, motion.angles[f + 100].flexion, 1e-9);
+  // no corner where the cycle closes: speed just before and just after it
+  const double before = motion.angles[100].flexion - motion.angles[99].flexion;
+  const double after = motion.angles[101].flexion - motion.angles[100].flexion;
+  EXPECT_NEAR(before, after, radians(0.1));
+}
 TEST_F(MotionFiles, EveryShippedPatternIsReadAndReturns) {
   int count = 0;
   for (const auto& entry :

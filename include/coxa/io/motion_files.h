@@ -4,6 +4,7 @@
 #include <coxa/motion/track.h>
 
 #include <filesystem>
+#include <vector>
 
 namespace coxa::io {
 
@@ -26,5 +27,9 @@ void write_opensim_motion(const std::filesystem::path& path, const motion::HipMo
 
 /// Residuals as CSV: frame, time_s, then one column LABEL_mm per thigh marker.
 void write_residuals(const std::filesystem::path& path, const motion::TrackResult& result);
+
+/// What the laboratory marked in time, as CSV: time_s, label, context; in the order of time.
+void write_events(const std::filesystem::path& path,
+                  const std::vector<motion::MarkerEvent>& events);
 
 }  // namespace coxa::io

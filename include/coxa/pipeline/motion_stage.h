@@ -27,14 +27,16 @@ Record run_motion_stage(const Subject& subject, const std::filesystem::path& seg
 /// Reads them back. @throws Error bad_file if they are not there
 MotionArtefacts read_motion_artefacts(const std::filesystem::path& folder, Side side);
 
+/// A recording and what is needed to track it.
+struct TrackInputs {
+  std::filesystem::path markers;
+  std::filesystem::path config = {};  ///< TOML, or a hip model as JSON; empty: markers are told by
+                                      ///< their labels, and the recording's own frames calibrate
+  std::filesystem::path model = {};   ///< hip model, JSON; wins over the configuration's; or empty
+  std::optional<Side> side = {};  ///< what the configuration must be for; nullopt: whatever it says
+};
 /// Reads a recording and tracks it as the configuration says.
-/// @param config  TOML or a hip model as JSON; empty: markers are told by their labels, and the
-/// recording's own
-///                frames calibrate
-/// @param side    what the configuration must be for; nullopt: whatever it says
-motion::TrackedRecording track_markers(const std::filesystem::path& markers,
-                                       const std::filesystem::path& config,
-                                       std::optional<Side> side, const Monitor& monitor);
+motion::TrackedRecording track_markers(const TrackInputs& inputs, const Monitor& monitor);
 
 /// The pattern's file: `pattern` itself where it is one, else data/movements/<pattern>.toml.
 /// @throws Error bad_input listing the movements there are
