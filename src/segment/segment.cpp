@@ -6,6 +6,7 @@
 #include <coxa/core/error.h>
 #include <coxa/segment/evolve.h>
 #include <coxa/segment/lay_on_hosts.h>
+#include <coxa/segment/layer_extent.h>
 #include <coxa/segment/layer_search.h>
 #include <coxa/segment/placement.h>
 #include <coxa/segment/pose_search.h>
@@ -137,8 +138,24 @@ double range_of_search(const std::vector<PreparedImage>& images, const SegmentOp
 
 /// A structure's confidence below which the caller is warned; a good fit has 0.6 to 0.9.
 constexpr double kLowConfidence = 0.4;
+/// A bone's confidence below which it is looked for once more, in a narrower search (share of the
+/// usual range).
+constexpr double kDoubtfulBone = 0.6, kNarrowShare = 2.0 / 3.0;
 /// A quality below which the whole hip is doubtful; adults in fair images have 0.55 to 0.7.
 constexpr double kDoubtfulQuality = 0.5;
+
+/// Keeps of every bone the better found.
+void update_best(std::vector<Body>& best, std::vector<Body> others) {
+  for (std::size_t b = 0; b < best.size(); ++b) {
+    if (quality_of(others[b]).confidence > quality_of(best[b]).confidence)
+      best[b] = std::move(others[b]);
+  }
+}
+
+bool any_doubtful(const std::vector<Body>& bodies) {
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [](const Body& body) { return quality_of(body).confidence < kDoubtfulBone; });
+}
 
 /// Everything about one hip, as a right hip.
 class Hip {
@@ -167,11 +184,17 @@ class Hip {
       bones.push_back(placed_body(*models[b], placed[b]));
       bones.back().prepared = &preparations_[numbers[b]];
     }
-    const auto resolutions = bone_resolutions(range_of_search(images_, options_));
-    choose_contrasts(bones, resolutions.front());
-    update_through(bones, resolutions, images_, std::vector<Obstacles>(bones.size()),
-                   std::vector<TriMesh>(bones.size()), options_, monitor);
-    for (std::size_t b = 0; b < bones.size(); ++b) bodies_[numbers[b]] = std::move(bones[b]);
+    const double wide = range_of_search(images_, options_);
+    choose_contrasts(bones, bone_resolutions(wide).front());
+    std::vector<Body> best = found_within(wide, bones, part_of(monitor, "segment", 0.0, 0.5));
+    // too wide a search may take another border for the bone's
+    if (wide > options_.search_range)
+      update_best(
+          best, found_within(options_.search_range, bones, part_of(monitor, "segment", 0.5, 0.75)));
+    if (any_doubtful(best))
+      update_best(best, found_within(kNarrowShare * options_.search_range, bones,
+                                     part_of(monitor, "segment", 0.75, 1.0)));
+    for (std::size_t b = 0; b < bones.size(); ++b) bodies_[numbers[b]] = std::move(best[b]);
   }
 
   void segment_layers(const Monitor& monitor) {
@@ -208,13 +231,27 @@ class Hip {
   const std::vector<PreparedImage>& images() const { return images_; }
   bool is_bone(std::size_t s) const { return !hosts_[s].has_value(); }
 
-  /// The surfaces of all bodies, with the layers laid on their bones.
-  std::vector<Surface> surfaces() const {
+  /// The surfaces of all bodies: layers with the extent that the images show, on their bones.
+  std::vector<Surface> surfaces(std::vector<std::string>& warnings) const {
     std::vector<Surface> surfaces;
     for (const Body& body : bodies_) surfaces.push_back(surface_of(body));
+    std::vector<ExtentLayer> sided;
+    std::vector<std::string> names;
     std::vector<LaidLayer> layers;
     for (std::size_t s = 0; s < bodies_.size(); ++s) {
-      if (hosts_[s]) layers.push_back({&surfaces[s].mesh, &surfaces[*hosts_[s]].mesh});
+      if (!hosts_[s]) continue;
+      TriMesh *layer = &surfaces[s].mesh, *host = &surfaces[*hosts_[s]].mesh;
+      layers.push_back({layer, host});
+      if (models_[s]->n_bone_side == 0) continue;
+      sided.push_back({layer, host, models_[s]->n_bone_side});
+      names.push_back(models_[s]->name);
+    }
+    const std::vector<double> separations = update_extents(sided, images_);
+    for (std::size_t l = 0; l < sided.size(); ++l) {
+      if (separations[l] >= kTellsApart) continue;
+      warnings.push_back(join_text(
+          "the rims and thickness of the ", names[l], " are the atlas's: the image tells only ",
+          std::lround(100.0 * separations[l]), " % of covered and bare bone apart"));
     }
     lay_on_hosts(layers, options_.minimum_gap);
     return surfaces;
@@ -233,6 +270,13 @@ class Hip {
       images_[i].contrast =
           best_contrast(bodies, std::span(images_).first(i), images_[i], resolution, options_);
     }
+  }
+
+  std::vector<Body> found_within(double range, std::vector<Body> bones,
+                                 const Monitor& monitor) const {
+    update_through(bones, bone_resolutions(range), images_, std::vector<Obstacles>(bones.size()),
+                   std::vector<TriMesh>(bones.size()), options_, monitor);
+    return bones;
   }
 
   /// Layers with sides known start with the modes that fit the images best.
@@ -299,7 +343,7 @@ std::map<std::string, double> landmark_distances(const Hip& hip, const shape::At
 SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& options) {
   SegmentResult result;
   double bone_confidence = 0.0, n_bones = 0.0;
-  const std::vector<Surface> surfaces = hip.surfaces();
+  const std::vector<Surface> surfaces = hip.surfaces(result.warnings);
   for (std::size_t s = 0; s < hip.bodies().size(); ++s) {
     const Body& body = hip.bodies()[s];
     const StructureQuality quality = quality_of(body);

@@ -1,0 +1,207 @@
+#include <coxa/segment/layer_extent.h>
+
+#include <coxa/core/parallel.h>
+#include <coxa/geom/triangle_tree.h>
+#include <coxa/mesh/unfold.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "coverage.h"
+#include "layer_sheet.h"
+#include "rim_search.h"
+
+namespace coxa::segment {
+namespace {
+
+// the rim is looked for so far to both sides of the present one, mm
+constexpr double kReach = 10.0;
+constexpr double kPatchReach = kReach + 2.0;
+// passes of smoothing with the neighbours, about 1.3 mm apart
+constexpr int kScorePasses = 3, kBonePasses = 4, kThicknessPasses = 4;
+// bare bone, where nothing is measured, holds the border's move at 0 with this weight
+constexpr double kBareWeight = 0.3;
+// the other bone is no farther than this from a point under cartilage, mm
+constexpr double kOtherBone = 14.0;
+// brightness as of cartilage up to this near to the other bone means that the layers touch, mm
+constexpr double kTouching = 0.8;
+// a layer needs as much room between the other layer and its bone, mm
+constexpr double kLeastRoom = 0.7;
+// a layer that has no thickness here yet counts as this thick where two share the room, mm
+constexpr double kLeastShare = 0.5;
+
+/// One layer with what the images say about it.
+struct Measured {
+  HostPatch patch;
+  Coverage coverage;
+  LayerSheet sheet;
+  VecX thickness;  ///< present, per sheet vertex, mm
+  bool usable() const { return coverage.separation >= kTellsApart; }
+};
+
+std::vector<Measured> measured(const std::vector<ExtentLayer>& layers,
+                               std::span<const PreparedImage> images) {
+  std::vector<Measured> all;
+  std::vector<HostPatch> patches;
+  for (const ExtentLayer& layer : layers) {
+    Measured m;
+    m.sheet = sheet_of(*layer.layer, layer.n_bone_side);
+    m.thickness = thickness_of(m.sheet, layer.layer->points);
+    patches.push_back(patch_about(*layer.host, m.sheet.sheet, kPatchReach));
+    all.push_back(std::move(m));
+  }
+  std::vector<Coverage> coverages = coverages_of(patches, images);
+  for (std::size_t l = 0; l < layers.size(); ++l) {
+    all[l].patch = std::move(patches[l]);
+    all[l].coverage = std::move(coverages[l]);
+  }
+  return all;
+}
+
+double interpolated(const VecX& values, const Triangles& triangles, const NearestPoint& at) {
+  double sum = 0.0;
+  for (int k = 0; k < 3; ++k) sum += at.barycentric[k] * values[triangles(at.triangle, k)];
+  return sum;
+}
+
+/// Takes the host's vertices, and the patch's, to the border found beneath the layer.
+void update_host(TriMesh& host, Measured& m) {
+  const VecX weight = m.coverage.known.array().max(kBareWeight);
+  const VecX found = (m.coverage.known.array() > 0.0).select(m.coverage.bone, 0.0);
+  const VecX move = smoothed_on(m.patch, found, weight, kBonePasses);
+  m.patch.mesh.points += move.asDiagonal() * m.patch.normals;
+  for (std::size_t v = 0; v < m.patch.host_vertex.size(); ++v)
+    host.points.row(m.patch.host_vertex[v]) = m.patch.mesh.points.row(static_cast<Index>(v));
+  update_unfolded(host);
+}
+
+/// Present thickness of a layer near a point; 0 where it is not.
+class PresentThickness {
+ public:
+  explicit PresentThickness(const Measured& m)
+      : m_(m), tree_(m.sheet.sheet.points, m.sheet.sheet.triangles) {}
+  double operator()(const Vec3& p) const {
+    constexpr double kOnSheet = 2.0;  // mm
+    const auto at = tree_.nearest_within(p, kOnSheet);
+    return at ? interpolated(m_.thickness, m_.sheet.sheet.triangles, *at) : 0.0;
+  }
+
+ private:
+  const Measured& m_;
+  TriangleTree tree_;
+};
+
+/// The layer across the joint, as far as it shares the room.
+struct Opposite {
+  const Measured* layer = nullptr;
+  std::optional<TriangleTree> bone;
+  std::optional<PresentThickness> thickness;
+};
+
+std::vector<Opposite> opposites_of(const std::vector<Measured>& all, std::size_t layer) {
+  std::vector<Opposite> others;
+  for (std::size_t m = 0; m < all.size(); ++m) {
+    if (m == layer) continue;
+    const TriMesh& patch = all[m].patch.mesh;
+    Opposite other{&all[m], TriangleTree(patch.points, patch.triangles), std::nullopt};
+    other.thickness.emplace(all[m]);
+    others.push_back(std::move(other));
+  }
+  return others;
+}
+
+double interpolated(const VecX& values, const Triangles& triangles, const RayHit& hit) {
+  double sum = 0.0;
+  for (int k = 0; k < 3; ++k) sum += hit.barycentric[k] * values[triangles(hit.triangle, k)];
+  return sum;
+}
+
+/// Beside the present layer, cartilage for which the other layer leaves no room is the other's:
+/// the host's border is wrong there.
+void update_claims(Measured& m, const std::vector<Opposite>& others) {
+  VecX& score = m.coverage.score;
+  parallel_for(static_cast<std::int64_t>(score.size()), [&](Index v) {
+    if (m.patch.rim_distance[v] > 0.0) return;
+    const Vec3 p = m.patch.mesh.points.row(v), normal = m.patch.normals.row(v);
+    for (const Opposite& other : others) {
+      const auto hit = other.bone->first_hit(p, normal, kOtherBone);
+      if (!hit) continue;
+      const double left = hit->distance - (*other.thickness)(p + hit->distance * normal);
+      if (left < kLeastRoom) score[v] = std::min(score[v], -1.0);
+    }
+  });
+}
+
+/// Thickness along the patch's normals: what the brightness shows, less what is the other layer's.
+VecX own_thickness(const Measured& m, const std::vector<Opposite>& others) {
+  const PresentThickness present(m);
+  VecX own(m.coverage.thickness.size());
+  parallel_for(static_cast<std::int64_t>(own.size()), [&](Index v) {
+    const Vec3 p = m.patch.mesh.points.row(v), normal = m.patch.normals.row(v);
+    // where the image is blurred the present thickness is as good
+    const double known = m.coverage.known[v], before = present(p);
+    own[v] = before > 0.0 ? known * m.coverage.thickness[v] + (1.0 - known) * before
+                          : m.coverage.thickness[v];
+    for (const Opposite& other : others) {
+      const auto hit = other.bone->first_hit(p, normal, kOtherBone);
+      if (!hit || own[v] < hit->distance - kTouching) continue;
+      if (interpolated(other.layer->coverage.score, other.bone->triangles(), *hit) <= 0.0) {
+        own[v] = std::min(own[v], hit->distance);
+        continue;
+      }
+      const double mine = std::max(before, kLeastShare);
+      const double theirs = std::max((*other.thickness)(p + hit->distance * normal), kLeastShare);
+      own[v] = hit->distance * mine / (mine + theirs);
+    }
+  });
+  return smoothed_on(m.patch, own, m.coverage.known, kThicknessPasses);
+}
+
+/// Lays the layer on the rim found with the thickness found.
+void update_layer(TriMesh& layer, const Measured& m, const VecX& thickness) {
+  const TriMesh sheet = sheet_to_rim(m.sheet.sheet, m.patch, m.coverage.score, kReach);
+  const TriangleTree tree(m.patch.mesh.points, m.patch.mesh.triangles);
+  for (Index v = 0; v < sheet.n_vertices(); ++v) {
+    const Index opposite = m.sheet.opposite[static_cast<std::size_t>(v)];
+    const Vec3 p = sheet.points.row(v);
+    const NearestPoint at = tree.nearest(p);
+    Vec3 normal = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      normal += at.barycentric[k] *
+                m.patch.normals.row(m.patch.mesh.triangles(at.triangle, k)).transpose();
+    }
+    layer.points.row(v) = p;
+    if (opposite == v) continue;
+    layer.points.row(opposite) =
+        p + interpolated(thickness, m.patch.mesh.triangles, at) * normal.normalized();
+  }
+}
+
+}  // namespace
+
+std::vector<double> update_extents(std::vector<ExtentLayer>& layers,
+                                   std::span<const PreparedImage> images) {
+  std::vector<Measured> all = measured(layers, images);
+  std::vector<double> separations;
+  for (const Measured& m : all) separations.push_back(m.coverage.separation);
+  for (std::size_t l = 0; l < layers.size(); ++l) {
+    if (all[l].usable()) update_host(*layers[l].host, all[l]);
+  }
+  std::vector<std::vector<Opposite>> opposites;
+  for (std::size_t l = 0; l < layers.size(); ++l) opposites.push_back(opposites_of(all, l));
+  for (std::size_t l = 0; l < layers.size(); ++l) update_claims(all[l], opposites[l]);
+  for (Measured& m : all) {
+    VecX& score = m.coverage.score;
+    score = smoothed_on(m.patch, score, VecX::Ones(score.size()), kScorePasses);
+  }
+  std::vector<VecX> thickness;
+  for (std::size_t l = 0; l < layers.size(); ++l)
+    thickness.push_back(own_thickness(all[l], opposites[l]));
+  for (std::size_t l = 0; l < layers.size(); ++l) {
+    if (all[l].usable()) update_layer(*layers[l].layer, all[l], thickness[l]);
+  }
+  return separations;
+}
+
+}  // namespace coxa::segment
