@@ -1,0 +1,225 @@
+#include "hip.h"
+
+#include <coxa/core/error.h>
+#include <coxa/segment/lay_on_hosts.h>
+#include <coxa/segment/layer_extent.h>
+#include <coxa/segment/layer_search.h>
+#include <coxa/segment/placement.h>
+#include <coxa/segment/pose_search.h>
+#include <coxa/segment/seat.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <span>
+
+#include "result.h"
+#include "schedule.h"
+#include "stages.h"
+
+namespace coxa::segment {
+namespace {
+
+Body placed_body(const shape::StructureModel& model, Points placed) {
+  Body body;
+  body.model = &model;
+  body.fit = fit_model(model, placed, VecX::Ones(placed.rows()), 1.0);
+  body.points = body.fit.points;
+  return body;
+}
+
+/// Lengths over which the unknown deformations of a bone are alike, mm, and how large they are
+/// beside what the examples leave of each other.
+constexpr double kLongLength = 60.0, kLongShare = 3.0;
+constexpr double kShortLength = 25.0, kShortShare = 1.0;
+
+/// What the examples do not show of a structure.
+Preparation prepared(const shape::StructureModel& model) {
+  const SimplexMesh& mesh = model.hierarchy.levels.back();
+  Preparation preparation;
+  for (const shape::ProfileSet& set : model.profiles)
+    preparation.kinds[set.contrast] = profile_kinds(set, mesh.neighbours);
+  const double left = std::isnan(model.leave_one_out_error) ? 0.0 : model.leave_one_out_error;
+  preparation.smooth =
+      joined(smooth_modes(mesh.points, {.deviation = kLongShare * left, .length = kLongLength}),
+             smooth_modes(mesh.points, {.deviation = kShortShare * left, .length = kShortLength}));
+  return preparation;
+}
+
+/// Landmarks placed on slices are as exact as these are thin: borders are looked for at least this
+/// many voxels away.
+constexpr double kVoxelsSearched = 3.0;
+
+/// mm, for the image with the thinnest slices.
+double range_of_search(const std::vector<PreparedImage>& images, const SegmentOptions& options) {
+  double thinnest = kInfinity;
+  for (const PreparedImage& image : images)
+    thinnest = std::min(thinnest, image.volume.spacing.maxCoeff());
+  return std::max(options.search_range, kVoxelsSearched * thinnest);
+}
+
+/// A bone's confidence below which it is looked for once more, in a narrower search (share of the
+/// usual range).
+constexpr double kDoubtfulBone = 0.6, kNarrowShare = 2.0 / 3.0;
+
+/// Keeps of every bone the better found.
+void update_best(std::vector<Body>& best, std::vector<Body> others) {
+  for (std::size_t b = 0; b < best.size(); ++b) {
+    if (quality_of(others[b]).confidence > quality_of(best[b]).confidence)
+      best[b] = std::move(others[b]);
+  }
+}
+
+bool any_doubtful(const std::vector<Body>& bodies) {
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [](const Body& body) { return quality_of(body).confidence < kDoubtfulBone; });
+}
+
+}  // namespace
+
+Hip::Hip(std::vector<PreparedImage> images, const shape::Atlas& atlas,
+         const SegmentOptions& options)
+    : images_(std::move(images)), atlas_(atlas), options_(options) {
+  choose_models();
+  for (std::size_t s = 0; s < models_.size(); ++s)
+    preparations_.push_back(hosts_[s] ? Preparation{} : prepared(*models_[s]));
+  bodies_.resize(models_.size());
+}
+
+void Hip::choose_models() {
+  std::vector<const shape::StructureModel*> all;
+  for (const shape::StructureModel& model : atlas_.structures) all.push_back(&model);
+  const auto hosts = find_hosts(all);
+  std::set<std::string> wanted;
+  for (const std::string& name : options_.structures) {
+    wanted.insert(shape::structure(atlas_, name).name);
+  }
+  for (std::size_t s = 0; s < all.size(); ++s) {
+    if (wanted.contains(all[s]->name) && hosts[s]) wanted.insert(all[*hosts[s]]->name);
+  }
+  for (const shape::StructureModel* model : all) {
+    if (wanted.contains(model->name)) models_.push_back(model);
+  }
+  hosts_ = find_hosts(models_);
+}
+
+void Hip::choose_contrasts(const std::vector<Body>& bodies, Resolution resolution) {
+  resolution.fit_only = true;
+  for (std::size_t i = 0; i < images_.size(); ++i) {
+    images_[i].contrast =
+        best_contrast(bodies, std::span(images_).first(i), images_[i], resolution, options_);
+  }
+}
+
+std::vector<Body> Hip::found_within(double range, std::vector<Body> bones,
+                                    const Monitor& monitor) const {
+  update_through(bones, bone_resolutions(range), images_, std::vector<Obstacles>(bones.size()),
+                 std::vector<TriMesh>(bones.size()), options_, monitor);
+  return bones;
+}
+
+void Hip::segment_bones(const shape::Landmarks& landmarks, const Monitor& monitor) {
+  std::vector<std::size_t> numbers;
+  std::vector<const shape::StructureModel*> models;
+  for (std::size_t s = 0; s < models_.size(); ++s) {
+    if (hosts_[s]) continue;
+    numbers.push_back(s);
+    models.push_back(models_[s]);
+  }
+  std::vector<Body> bones;
+  const std::vector<Points> placed =
+      landmarks.empty() ? find_pose(models, images_, options_, monitor).placed
+                        : place_by_landmarks(models, landmarks, atlas_, options_.landmark_error);
+  for (std::size_t b = 0; b < models.size(); ++b) {
+    bones.push_back(placed_body(*models[b], placed[b]));
+    bones.back().prepared = &preparations_[numbers[b]];
+  }
+  const double wide = range_of_search(images_, options_);
+  choose_contrasts(bones, bone_resolutions(wide).front());
+  std::vector<Body> best = found_within(wide, bones, part_of(monitor, "segment", 0.0, 0.5));
+  // too wide a search may take another border for the bone's
+  if (wide > options_.search_range)
+    update_best(best,
+                found_within(options_.search_range, bones, part_of(monitor, "segment", 0.5, 0.75)));
+  if (any_doubtful(best))
+    update_best(best, found_within(kNarrowShare * options_.search_range, bones,
+                                   part_of(monitor, "segment", 0.75, 1.0)));
+  for (std::size_t b = 0; b < bones.size(); ++b) bodies_[numbers[b]] = std::move(best[b]);
+}
+
+void Hip::place_layers(std::vector<Body>& layers, const std::vector<TriMesh>& means,
+                       const std::vector<TriMesh>& seats, Resolution resolution) {
+  resolution.range = 0.0;
+  resolution.score_smoothing = 0;
+  const auto smooth = smoothed_images(images_, resolution.image_sigma);
+  for (std::size_t b = 0; b < layers.size(); ++b) {
+    if (layers[b].model->n_bone_side == 0) continue;
+    const VecX seat = layers[b].seat;
+    const Points placed =
+        layer_by_modes(layers[b], means[b], seats[b], smooth, resolution, options_);
+    layers[b] = placed_body(*layers[b].model, placed);
+    layers[b].points = placed;
+    layers[b].seat = seat;
+  }
+}
+
+void Hip::segment_layers(const Monitor& monitor) {
+  std::vector<std::size_t> numbers;
+  std::vector<Body> layers;
+  std::vector<TriMesh> means, seats;
+  for (std::size_t s = 0; s < models_.size(); ++s) {
+    if (!hosts_[s]) continue;
+    const Body& host = bodies_[*hosts_[s]];
+    means.push_back(dual_surface(host.model->hierarchy.levels.back()));
+    seats.push_back(surface_mesh(host));
+    Body layer = placed_body(*models_[s], carried_points(models_[s]->hierarchy.levels.back().points,
+                                                         means.back(), seats.back()));
+    layer.seat = seated_vertices(*models_[s], means.back());
+    numbers.push_back(s);
+    layers.push_back(std::move(layer));
+  }
+  if (layers.empty()) return;
+  const auto resolutions = layer_resolutions();
+  choose_contrasts(layers, resolutions.front());
+  place_layers(layers, means, seats, resolutions.front());
+  // no layer enters any bone
+  Obstacles bones;
+  for (std::size_t s = 0; s < models_.size(); ++s) {
+    if (!hosts_[s]) bones.push_back(surface_mesh(bodies_[s]));
+  }
+  update_through(layers, resolutions, images_, std::vector<Obstacles>(layers.size(), bones), seats,
+                 options_, monitor);
+  for (std::size_t b = 0; b < layers.size(); ++b) bodies_[numbers[b]] = std::move(layers[b]);
+}
+
+std::vector<Surface> Hip::surfaces(std::vector<std::string>& warnings) const {
+  std::vector<Surface> surfaces;
+  for (const Body& body : bodies_) surfaces.push_back(surface_of(body));
+  std::vector<ExtentLayer> sided;
+  std::vector<std::string> names;
+  std::vector<LaidLayer> layers;
+  for (std::size_t s = 0; s < bodies_.size(); ++s) {
+    if (!hosts_[s]) continue;
+    TriMesh *layer = &surfaces[s].mesh, *host = &surfaces[*hosts_[s]].mesh;
+    layers.push_back({layer, host});
+    if (models_[s]->n_bone_side == 0) continue;
+    sided.push_back({layer, host, models_[s]->n_bone_side});
+    names.push_back(models_[s]->name);
+  }
+  const std::vector<double> separations = update_extents(sided, images_);
+  for (std::size_t l = 0; l < sided.size(); ++l) {
+    if (separations[l] >= kTellsApart) continue;
+    warnings.push_back(join_text(
+        "the rims and thickness of the ", names[l], " are the atlas's: the image tells only ",
+        std::lround(100.0 * separations[l]), " % of covered and bare bone apart"));
+  }
+  lay_on_hosts(layers, options_.minimum_gap);
+  return surfaces;
+}
+
+bool Hip::is_asked_for(std::size_t s) const {
+  const auto& names = options_.structures;
+  return std::find(names.begin(), names.end(), models_[s]->name) != names.end();
+}
+
+}  // namespace coxa::segment

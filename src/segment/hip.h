@@ -1,0 +1,50 @@
+#pragma once
+
+#include <coxa/segment/evolve.h>
+#include <coxa/segment/segment.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace coxa::segment {
+
+/// Everything about one hip while it is segmented, as a right hip.
+class Hip {
+ public:
+  /// @param atlas, options must outlive the hip
+  Hip(std::vector<PreparedImage> images, const shape::Atlas& atlas, const SegmentOptions& options);
+
+  void segment_bones(const shape::Landmarks& landmarks, const Monitor& monitor);
+  void segment_layers(const Monitor& monitor);
+
+  const std::vector<Body>& bodies() const { return bodies_; }
+  const std::vector<PreparedImage>& images() const { return images_; }
+  bool is_bone(std::size_t s) const { return !hosts_[s].has_value(); }
+
+  /// The surfaces of all bodies: layers with the extent that the images show, on their bones.
+  std::vector<Surface> surfaces(std::vector<std::string>& warnings) const;
+
+  /// Whether the caller asked for it, or only something that lies on it needs it.
+  bool is_asked_for(std::size_t s) const;
+
+ private:
+  /// The structures asked for and the ones they lie on.
+  void choose_models();
+  void choose_contrasts(const std::vector<Body>& bodies, Resolution resolution);
+  std::vector<Body> found_within(double range, std::vector<Body> bones,
+                                 const Monitor& monitor) const;
+  /// Layers with sides known start with the modes that fit the images best.
+  void place_layers(std::vector<Body>& layers, const std::vector<TriMesh>& means,
+                    const std::vector<TriMesh>& seats, Resolution resolution);
+
+  std::vector<PreparedImage> images_;
+  const shape::Atlas& atlas_;
+  const SegmentOptions& options_;
+  std::vector<const shape::StructureModel*> models_;
+  std::vector<std::optional<std::size_t>> hosts_;
+  std::vector<Preparation> preparations_;
+  std::vector<Body> bodies_;
+};
+
+}  // namespace coxa::segment
