@@ -4,12 +4,16 @@
 #include <coxa/core/error.h>
 #include <coxa/io/tets.h>
 #include <coxa/joint/simulate.h>
+#include <coxa/mesh/vertex_normals.h>
 #include <coxa/pipeline/joint_stage.h>
 #include <coxa/pipeline/motion_stage.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "fem/shapes.h"
 
@@ -43,10 +47,34 @@ Arguments read(int argc, char** argv) {
   return arguments;
 }
 
+/// Ten-node mesh whose articular mid nodes lie on the curved surface that the joint's contact takes
+/// the facets for: a quarter of half the sum of the distances of an edge's ends from each other's
+/// tangent plane (docs/collide.md).
+TetMesh curved_ten_node(const TetMesh& mesh) {
+  TetMesh ten = fem::test::with_mid_nodes(mesh);
+  const TriMesh surface{mesh.points, joint::facets_with(mesh, FacetTag::articular_side)};
+  const Points normals = vertex_normals(surface);
+  std::set<std::pair<Index, Index>> edges;
+  for (Index f = 0; f < surface.n_triangles(); ++f)
+    for (int k = 0; k < 3; ++k)
+      edges.insert(std::minmax(surface.triangles(f, k), surface.triangles(f, (k + 1) % 3)));
+  constexpr int kEnds[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+  std::set<Index> done;
+  for (Index e = 0; e < ten.n_tets(); ++e)
+    for (int k = 0; k < 6; ++k) {
+      const auto [a, b] = std::minmax(ten.tets(e, kEnds[k][0]), ten.tets(e, kEnds[k][1]));
+      const Index middle = ten.mid_nodes(e, k);
+      if (edges.count({a, b}) == 0 || !done.insert(middle).second) continue;
+      const Eigen::RowVector3d edge = mesh.points.row(b) - mesh.points.row(a);
+      const double bulge = 0.5 * (edge.dot(normals.row(b)) - edge.dot(normals.row(a)));
+      ten.points.row(middle) += 0.25 * bulge * (normals.row(a) + normals.row(b)).normalized();
+    }
+  return ten;
+}
+
 void write_decks(const joint::JointModel& model, const Arguments& arguments) {
   const auto write = [&](const TetMesh& mesh, const char* name) {
-    io::write_tets(arguments.decks / name,
-                   arguments.ten_node ? fem::test::with_mid_nodes(mesh) : mesh);
+    io::write_tets(arguments.decks / name, arguments.ten_node ? curved_ten_node(mesh) : mesh);
   };
   write(model.acetabular_cartilage, "acetabular.inp");
   write(model.femoral_cartilage, "femoral.inp");

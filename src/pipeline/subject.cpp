@@ -105,6 +105,17 @@ void check_joint(const io::Table& table, const JointEntry& joint) {
           joint.law, "\"");
 }
 
+/// Percent of body weight of an activity that was measured in vivo.
+double measured_percent(const io::Table& table, const std::string& activity) {
+  const io::Table loads = io::Table::read(shipped_data("in_vivo_loads.toml"));
+  const auto load = loads.find_table(activity);
+  std::string known;
+  for (const std::string& name : loads.keys()) known += (known.empty() ? "" : ", ") + name;
+  require(load.has_value(), table.where("activity"), ": there is no load of \"", activity,
+          "\"; known are ", known);
+  return load->get<double>("percent_body_weight");
+}
+
 }  // namespace
 
 Side read_side(const io::Table& table) {
@@ -124,6 +135,11 @@ JointEntry read_joint_entry(const io::Table& root) {
   joint.loading = kLoadings.at(loading);
   joint.force = table->value_or("force_N", joint.force);
   joint.percent = table->value_or("percent_body_weight", joint.percent);
+  if (const auto activity = table->find<std::string>("activity")) {
+    require(!table->has("percent_body_weight"), table->where("activity"),
+            " and percent_body_weight exclude each other");
+    joint.percent = measured_percent(*table, *activity);
+  }
   joint.direction = table->find<Vec3>("direction");
   joint.youngs_modulus = table->value_or("young_mpa", joint.youngs_modulus);
   joint.poisson_ratio = table->value_or("poisson", joint.poisson_ratio);

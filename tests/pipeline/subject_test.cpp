@@ -99,6 +99,17 @@ TEST_F(SubjectFile, TakesALoadInPercentOfBodyWeight) {
   EXPECT_NE(error_of(good_ + "[joint]\npercent_body_weight = 233\n").find("left out otherwise"),
             std::string::npos);
 }
+TEST_F(SubjectFile, TakesALoadMeasuredInVivoByItsActivity) {
+  const std::string load = "[joint]\nloading = \"body_weight\"\nactivity = ";
+  const Subject s = read("body_mass_kg = 70\n" + good_ + load + "\"stairs_up\"\n");
+  EXPECT_DOUBLE_EQ(s.joint.percent, 251.0);
+  const std::string unknown = error_of("body_mass_kg = 70\n" + good_ + load + "\"flying\"\n");
+  EXPECT_NE(unknown.find("there is no load of \"flying\""), std::string::npos) << unknown;
+  EXPECT_NE(unknown.find("walking"), std::string::npos) << unknown;
+  const std::string both =
+      error_of("body_mass_kg = 70\n" + good_ + load + "\"walking\"\npercent_body_weight = 200\n");
+  EXPECT_NE(both.find("exclude each other"), std::string::npos) << both;
+}
 TEST_F(SubjectFile, WantsASide) {
   EXPECT_NE(error_of("side = \"port\"\n").find("must be \"left\" or \"right\""), std::string::npos);
 }
