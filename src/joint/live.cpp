@@ -58,6 +58,7 @@ struct LiveHip::Impl {
                                         model.side);
   }
   FrameResult solve(const BonePose& target, Exactness exactness, const Monitor& monitor);
+  Step attempt(const BonePose& next, const Monitor& monitor);
 };
 
 FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
@@ -115,18 +116,27 @@ LiveHip::Step LiveHip::step_towards(const motion::HipAngles& target, const Monit
   const BonePose from = impl_->state.pose, to = impl_->pose_at(target);
   const double way = rotation_vector(to.R * from.R.transpose()).norm();
   const double share = std::min(1.0, impl_->rough.max_rotation_step / std::max(way, 1e-12));
-  const BonePose next = share < 1.0 ? between(from, to, share) : to;
+  Step step = impl_->attempt(share < 1.0 ? between(from, to, share) : to, monitor);
+  step.arrived = share == 1.0 || step.frame.status != FrameStatus::converged;
+  // a step that finds no equilibrium is tried shorter
+  for (double part = 0.5; step.frame.status == FrameStatus::failed && part > 0.2; part *= 0.5) {
+    step = impl_->attempt(between(from, to, part * share), monitor);
+    step.arrived = step.frame.status != FrameStatus::converged;
+  }
+  return step;
+}
 
-  const double clearance = impl_->limit.clearance(impl_->placed(next));
+/// A step to a pose, unless the bones would meet there.
+LiveHip::Step LiveHip::Impl::attempt(const BonePose& next, const Monitor& monitor) {
+  const double clearance = limit.clearance(placed(next));
   Step step;
   if (clearance < 0.0) {
     step.frame.status = FrameStatus::beyond_bony_limit;
     step.frame.reason = join_text("the bones would overlap by ", -clearance, " mm");
-    step.frame.X_II = impl_->placed(from);
-    step.frame.angles = impl_->angles_of(from);
+    step.frame.X_II = placed(state.pose);
+    step.frame.angles = angles_of(state.pose);
   } else {
-    step.frame = impl_->solve(next, Exactness::on_the_way, monitor);
-    step.arrived = share == 1.0 || step.frame.status != FrameStatus::converged;
+    step.frame = solve(next, Exactness::on_the_way, monitor);
   }
   step.frame.bone_clearance = clearance;
   return step;

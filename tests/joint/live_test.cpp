@@ -3,6 +3,8 @@
 #include <coxa/core/error.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "joint/layers.h"
 
 namespace coxa::joint {
@@ -47,6 +49,22 @@ TEST(LiveHip, SettledAgreesWithTheFullSolution) {
               0.03 * full.frames[1].contact.peak_pressure_p99);
   EXPECT_NEAR(settled.contact.contact_area, full.frames[1].contact.contact_area,
               0.03 * full.frames[1].contact.contact_area);
+}
+
+TEST(LiveHip, TakesShorterStepsWhereALongOneFindsNoEquilibrium) {
+  // facets of 7 mm: at 22 degrees of flexion a step of 2 degrees fails
+  const JointModel model = test::make_ball_in_cup({.cup_rings = 4, .head_rings = 5, .layers = 1});
+  LiveHip hip(model, passive_examination(model, 200.0));
+  double shortest = kInfinity;
+  for (int k = 0; k < 60; ++k) {
+    const double before = hip.angles().flexion;
+    const LiveHip::Step step = hip.step_towards({radians(30.0), 0.0, 0.0});
+    ASSERT_EQ(step.frame.status, FrameStatus::converged) << step.frame.reason;
+    if (step.arrived) break;
+    shortest = std::min(shortest, hip.angles().flexion - before);
+  }
+  EXPECT_NEAR(degrees(hip.angles().flexion), 30.0, 1e-6);
+  EXPECT_LT(shortest, 0.6 * live_options().max_rotation_step);
 }
 
 TEST(LiveHip, RefusesALoadThatChangesFromFrameToFrame) {

@@ -223,6 +223,46 @@ TEST(Simulate, StopsWhenCancelled) {
   EXPECT_THROW(simulate(congruent, at_rest, passive_examination(congruent), quick, monitor), Error);
 }
 
+TEST(CartilageLaws, AgreeWhileStrainsAreSmall) {
+  JointModel model = congruent;
+  const LoadCase load = passive_examination(model, 500.0);  // strains of 1.5 %
+  const FrameResult known = only_frame(model, load);
+  for (const MaterialLaw law : {MaterialLaw::st_venant_kirchhoff, MaterialLaw::neo_hookean}) {
+    model.material.law = law;
+    const FrameResult frame = only_frame(model, load);
+    ASSERT_EQ(frame.status, FrameStatus::converged) << frame.reason;
+    EXPECT_NEAR(frame.contact.mean_pressure, known.contact.mean_pressure,
+                0.05 * known.contact.mean_pressure);
+    // patches of elements are softer than elements, and the laws part by a few percent
+    EXPECT_NEAR(frame.translation.z(), known.translation.z(), 0.15 * known.translation.z());
+  }
+}
+TEST(CartilageLaws, NeoHookeanMayBeNearlyIncompressible) {
+  JointModel model = congruent;
+  model.material = {MaterialLaw::neo_hookean, 40.67, 0.495};
+  const FrameResult frame = only_frame(model, passive_examination(model, 1000.0));
+  ASSERT_EQ(frame.status, FrameStatus::converged) << frame.reason;
+  EXPECT_LT(frame.balance.force_error, 1e-3);
+  // about the pole all three principal stresses are near the pressure, the patches' part included
+  const TetMesh& mesh = model.acetabular_cartilage;
+  const auto near_axis = [](const Vec3& p) { return p.head<2>().norm() < 8.0; };
+  const StressFields socket = acetabular_fields(model, frame);
+  double stress = 0.0, pressure = 0.0;
+  int elements = 0, nodes = 0;
+  for (Index t = 0; t < mesh.n_tets(); ++t) {
+    const Vec3 middle = mesh.points(mesh.tets.row(t), Eigen::all).colwise().mean();
+    if (!near_axis(middle)) continue;
+    stress -= socket.principal_stress.row(t).mean();
+    ++elements;
+  }
+  for (Index i = 0; i < mesh.n_vertices(); ++i) {
+    if (!(frame.acetabular_pressure[i] > 0.0) || !near_axis(mesh.points.row(i))) continue;
+    pressure += frame.acetabular_pressure[i];
+    ++nodes;
+  }
+  EXPECT_NEAR(stress / elements, pressure / nodes, 0.15 * pressure / nodes);
+}
+
 TEST(StressFields, OfAPressedCupAreCompressiveAlongItsAxis) {
   const FrameResult frame = only_frame(congruent, passive_examination(congruent, 500.0));
   const StressFields socket = acetabular_fields(congruent, frame),

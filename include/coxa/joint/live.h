@@ -33,7 +33,8 @@ class LiveHip {
   /// equilibrium there.
   ///
   /// Where the bones would meet the femur stays, and the frame says beyond_bony_limit; where no
-  /// equilibrium is found it stays likewise, and the frame is failed with the reason.
+  /// equilibrium is found, not even half or a quarter of the way, it stays likewise, and the frame
+  /// is failed with the reason.
   /// @throws Error cancelled
   Step step_towards(const motion::HipAngles& target, const Monitor& monitor = {});
 
