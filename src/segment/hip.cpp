@@ -1,6 +1,7 @@
 #include "hip.h"
 
 #include <coxa/core/error.h>
+#include <coxa/segment/cortex_search.h>
 #include <coxa/segment/lay_on_hosts.h>
 #include <coxa/segment/layer_extent.h>
 #include <coxa/segment/layer_search.h>
@@ -58,9 +59,11 @@ double range_of_search(const std::vector<PreparedImage>& images, const SegmentOp
   return std::max(options.search_range, kVoxelsSearched * thinnest);
 }
 
-/// A bone's confidence below which it is looked for once more, in a narrower search (share of the
-/// usual range).
-constexpr double kDoubtfulBone = 0.6, kNarrowShare = 2.0 / 3.0;
+/// A bone's confidence below which it is looked for twice more, in a narrower search (share of the
+/// usual range): from the same start, and from where dark lines inside it lie.
+constexpr double kDoubtfulBone = 0.65, kNarrowShare = 2.0 / 3.0;
+/// mm, of the places where dark lines lie.
+constexpr double kDrawnNoise = 1.0;
 
 /// Keeps of every bone the better found.
 void update_best(std::vector<Body>& best, std::vector<Body> others) {
@@ -111,9 +114,9 @@ void Hip::choose_contrasts(const std::vector<Body>& bodies, Resolution resolutio
   }
 }
 
-std::vector<Body> Hip::found_within(double range, std::vector<Body> bones,
-                                    const Monitor& monitor) const {
-  update_through(bones, bone_resolutions(range), images_, std::vector<Obstacles>(bones.size()),
+std::vector<Body> Hip::found_by(const std::vector<Resolution>& resolutions, std::vector<Body> bones,
+                                const Monitor& monitor) const {
+  update_through(bones, resolutions, images_, std::vector<Obstacles>(bones.size()),
                  std::vector<TriMesh>(bones.size()), options_, monitor);
   return bones;
 }
@@ -136,14 +139,25 @@ void Hip::segment_bones(const shape::Landmarks& landmarks, const Monitor& monito
   }
   const double wide = range_of_search(images_, options_);
   choose_contrasts(bones, bone_resolutions(wide).front());
-  std::vector<Body> best = found_within(wide, bones, part_of(monitor, "segment", 0.0, 0.5));
+  std::vector<Body> best =
+      found_by(bone_resolutions(wide), bones, part_of(monitor, "segment", 0.0, 0.5));
   // too wide a search may take another border for the bone's
   if (wide > options_.search_range)
-    update_best(best,
-                found_within(options_.search_range, bones, part_of(monitor, "segment", 0.5, 0.75)));
-  if (any_doubtful(best))
-    update_best(best, found_within(kNarrowShare * options_.search_range, bones,
-                                   part_of(monitor, "segment", 0.75, 1.0)));
+    update_best(best, found_by(bone_resolutions(options_.search_range), bones,
+                               part_of(monitor, "segment", 0.5, 0.75)));
+  if (any_doubtful(best)) {
+    auto narrow = bone_resolutions(kNarrowShare * options_.search_range);
+    update_best(best, found_by(narrow, bones, part_of(monitor, "segment", 0.75, 0.85)));
+    for (std::size_t b = 0; b < bones.size(); ++b) {
+      bones[b].fit = fit_model(*models[b], drawn_to_cortex(best[b], images_),
+                               VecX::Ones(bones[b].points.rows()), kDrawnNoise,
+                               &preparations_[numbers[b]].smooth);
+      bones[b].points = bones[b].fit.points;
+    }
+    // without the first, which would take the smooth deformations out again
+    narrow.erase(narrow.begin());
+    update_best(best, found_by(narrow, bones, part_of(monitor, "segment", 0.85, 1.0)));
+  }
   for (std::size_t b = 0; b < bones.size(); ++b) bodies_[numbers[b]] = std::move(best[b]);
 }
 

@@ -32,8 +32,8 @@ class Hip {
   /// The structures asked for and the ones they lie on.
   void choose_models();
   void choose_contrasts(const std::vector<Body>& bodies, Resolution resolution);
-  std::vector<Body> found_within(double range, std::vector<Body> bones,
-                                 const Monitor& monitor) const;
+  std::vector<Body> found_by(const std::vector<Resolution>& resolutions, std::vector<Body> bones,
+                             const Monitor& monitor) const;
   /// Layers with sides known start with the modes that fit the images best.
   void place_layers(std::vector<Body>& layers, const std::vector<TriMesh>& means,
                     const std::vector<TriMesh>& seats, Resolution resolution);
