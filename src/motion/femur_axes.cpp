@@ -95,18 +95,27 @@ ProximalFemurAxes proximal_femur_axes(const TriMesh& femur, const Vec3& centre, 
         line.direction.dot(axes.shaft_direction) > 0 ? line.direction : Vec3(-line.direction);
   }
 
-  // neck: from the head's centre to the centroid of the narrowest section on the way to the shaft
+  // neck: from the head's centre to the centroids of its sections, those hardly longer than the
+  // narrowest, on the way to the shaft; one section alone is easily tilted by what it meets
+  constexpr double kNarrow = 1.15;
   const Vec3 d = axes.shaft_point - centre;
   const Vec3 to_shaft = (d - d.dot(axes.shaft_direction) * axes.shaft_direction).normalized();
   Vec3 neck = (to_shaft - 0.8 * axes.shaft_direction).normalized();
-  for (int round = 0; round < 5; ++round) {
-    std::optional<Section> narrowest;
+  for (int round = 0; round < 8; ++round) {
+    std::vector<Section> sections;
+    double narrowest = kInfinity;
     for (double depth = 0.8 * radius; depth < 1.8 * radius; depth += 1.0) {
       const auto section = section_of(femur, centre + depth * neck, neck, 1.3 * radius);
-      if (section && (!narrowest || section->length < narrowest->length)) narrowest = section;
+      if (!section) continue;
+      sections.push_back(*section);
+      narrowest = std::min(narrowest, section->length);
     }
-    require(narrowest.has_value(), "no femoral neck is found beside the head");
-    neck = (narrowest->centroid - centre).normalized();
+    require(!sections.empty(), "no femoral neck is found beside the head");
+    Vec3 sum = Vec3::Zero();
+    for (const Section& section : sections) {
+      if (section.length <= kNarrow * narrowest) sum += (section.centroid - centre).normalized();
+    }
+    neck = sum.normalized();
   }
   axes.neck_direction = neck;
   return axes;

@@ -121,14 +121,6 @@ const TriMesh* find_mesh(const SurfaceSet& surfaces, const char* name) {
   return it == surfaces.end() || it->second.mesh.empty() ? nullptr : &it->second.mesh;
 }
 
-// a femur that ends before its shaft shows its direction well
-bool shaft_leaves_early(const SurfaceSet& surfaces, const Vec3& joint_centre) {
-  constexpr double kLongShaft = 180.0;  // mm below the head's centre
-  const TriMesh* femur = find_mesh(surfaces, "femur");
-  return femur && (femur->points.rowwise() - joint_centre.transpose()).rowwise().norm().maxCoeff() <
-                      kLongShaft;
-}
-
 }  // namespace
 
 CompletedBone complete_bone(const TriMesh& seen, const shape::StructureModel& model,
@@ -144,7 +136,7 @@ CompletedBone complete_bone(const TriMesh& seen, const shape::StructureModel& mo
 motion::FrameLandmarks completed_pelvis_landmarks(const CompletedBone& hip_bone, Side side) {
   // of one coordinate of a completed landmark, by which the frame's interval is made:
   // docs/motion.md
-  constexpr double kLandmarkSd = 3.0;  // mm
+  constexpr double kLandmarkSd = 6.0;  // mm
   const Vec3 n = hip_bone.leftward;
   const double sign = side == Side::right ? 1.0 : -1.0;
   // the median plane touches the bone at the symphysis
@@ -163,7 +155,7 @@ motion::FrameLandmarks completed_pelvis_landmarks(const CompletedBone& hip_bone,
 motion::BoneFrames make_completed_frames(const SurfaceSet& surfaces,
                                          const motion::FrameLandmarks& landmarks,
                                          const shape::Atlas& atlas, const Vec3& joint_centre,
-                                         Side side) {
+                                         Side side, const motion::BoneFrameOptions& options) {
   std::vector<std::string> warnings;
   const auto completed = [&](const char* name) -> std::optional<CompletedBone> {
     const TriMesh* seen = find_mesh(surfaces, name);
@@ -179,13 +171,14 @@ motion::BoneFrames make_completed_frames(const SurfaceSet& surfaces,
   bool femur_is_completed = false;
   const bool knee_is_known =
       has(landmarks, "medial_epicondyle", side) && has(landmarks, "lateral_epicondyle", side);
-  if (!knee_is_known && shaft_leaves_early(surfaces, joint_centre)) {
+  if (!knee_is_known) {
     if (const auto femur = completed("femur")) {
       whole["femur"].mesh = femur->surface;
       femur_is_completed = true;
     }
   }
-  motion::BoneFrames frames = motion::make_bone_frames(whole, landmarks, joint_centre, side);
+  motion::BoneFrames frames =
+      motion::make_bone_frames(whole, landmarks, joint_centre, side, options);
   if (femur_is_completed) frames.femur.source = "shape model completion, " + frames.femur.source;
   if (!pelvis_is_known(landmarks)) {
     if (const auto bone = completed("hip_bone")) {

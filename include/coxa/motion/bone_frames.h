@@ -23,6 +23,9 @@ struct BoneFrameOptions {
   /// The mean of 1507 femora against the epicondyles' axis (Davis et al. 2024).
   double mean_anteversion = 11.5 * kPi / 180.0;
   double anteversion_sd = 7.9 * kPi / 180.0;  ///< rad, of those about that mean
+  /// Angle by which the upper shaft's line passes in front of the knee, seen from the hip; rad. The
+  /// mean of two whole femora (docs/motion.md section 8).
+  double mean_bow = 7.8 * kPi / 180.0;
   double femur_length = 420.0;  ///< mm, joint centre to knee centre, where the knee is not in view
   double positioning_sd =
       5.0 * kPi / 180.0;  ///< rad, of the pelvis in the scanner where only image axes are known

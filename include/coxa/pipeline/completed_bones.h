@@ -30,10 +30,10 @@ CompletedBone complete_bone(const TriMesh& seen, const shape::StructureModel& mo
 motion::FrameLandmarks completed_pelvis_landmarks(const CompletedBone& hip_bone, Side side);
 
 /// Bone frames with what is missing completed from the atlas: pelvis landmarks where `landmarks`
-/// has too few, the femur where its shaft leaves the view early.
+/// has too few, the femur where the epicondyles are not known.
 motion::BoneFrames make_completed_frames(const SurfaceSet& surfaces,
                                          const motion::FrameLandmarks& landmarks,
                                          const shape::Atlas& atlas, const Vec3& joint_centre,
-                                         Side side);
+                                         Side side, const motion::BoneFrameOptions& options = {});
 
 }  // namespace coxa::pipeline
