@@ -200,6 +200,9 @@ Vec3 turn(const Mat3& truth, const Mat3& found) {
   return degrees(1.0) * rotation_vector(truth.transpose() * found);
 }
 
+// degrees by which the line of the upper shaft passes in front of the knee: means of two sides
+constexpr double kBowOfVhf = 8.8, kBowOfVhm = 6.8;
+
 void print_frames(const fs::path& shared, const fs::path& atlas_file) {
   const shape::Atlas atlas = io::read_atlas(atlas_file);
   for (const std::string& name : atlas.subjects) {
@@ -231,8 +234,11 @@ void print_frames(const fs::path& shared, const fs::path& atlas_file) {
         all.points[name] = p;
       const motion::BoneFrames truth = motion::make_bone_frames(hip, all, c, side);
       for (const View& view : kViews) {
+        // the bow of the other person's femora, with all of the shaft in view
+        const motion::BoneFrameOptions options{
+            .mean_bow = radians(std::string(subject) == "vhf" ? kBowOfVhm : kBowOfVhf)};
         const auto found = pipeline::make_completed_frames(
-            cropped(hip, c, view.up, view.down, view.around), {}, atlas, c, side);
+            cropped(hip, c, view.up, view.down, view.around), {}, atlas, c, side, options);
         for (const auto& [bone, a, b] : {std::tuple{"pelvis", &truth.pelvis, &found.pelvis},
                                          std::tuple{"femur", &truth.femur, &found.femur}}) {
           const Vec3 t = turn(a->X_IB.R, b->X_IB.R);
