@@ -72,10 +72,22 @@ class RingFilling {
   std::array<std::array<std::size_t, kLargestRing>, kLargestRing> split_{};
 };
 
-void replace(TetGrid& grid, const std::vector<Index>& old, const std::vector<Tet>& made) {
-  for (const Index t : old) grid.remove(t);
-  for (const Tet& t : made) grid.add(t);
-}
+// A grid whose connections change, and how many elements more it may get.
+struct Flipping {
+  TetGrid& grid;
+  const FlipGuard& guard;
+  std::ptrdiff_t room;
+
+  bool replace(const std::vector<Index>& old, const std::vector<Tet>& made) {
+    const auto more =
+        static_cast<std::ptrdiff_t>(made.size()) - static_cast<std::ptrdiff_t>(old.size());
+    if (more > room) return false;
+    room -= more;
+    for (const Index t : old) grid.remove(t);
+    for (const Tet& t : made) grid.add(t);
+    return true;
+  }
+};
 
 // Whether an edge or a face that the new elements bring is there already, away from the ring: where
 // the boundary folds over itself.
@@ -96,21 +108,23 @@ bool repeats(const TetGrid& grid, const EdgeRing& ring, const std::vector<Tet>& 
   return false;
 }
 
-bool remove_edge(TetGrid& grid, const FlipGuard& guard, Index a, Index b) {
+bool remove_edge(Flipping& flipping, Index a, Index b) {
+  const TetGrid& grid = flipping.grid;
   const EdgeRing ring = ring_around(grid, a, b);
   if (ring.corners.size() < 3 || ring.corners.size() > kLargestRing) return false;
   const double old = worst_of(grid, ring.tets);
   const RingFilling filling(grid, a, b, ring.corners);
   if (filling.worst() < old + kLeastGain) return false;
-  if (!ring.closed && !guard.allows_swap(grid, a, b, ring.corners.front(), ring.corners.back()))
+  if (!ring.closed &&
+      !flipping.guard.allows_swap(grid, a, b, ring.corners.front(), ring.corners.back()))
     return false;
   if (repeats(grid, ring, filling.tets())) return false;
-  replace(grid, ring.tets, filling.tets());
-  return true;
+  return flipping.replace(ring.tets, filling.tets());
 }
 
 // two elements that share a face become three around the edge between their tips
-bool remove_face(TetGrid& grid, Index t, std::size_t corner) {
+bool remove_face(Flipping& flipping, Index t, std::size_t corner) {
+  const TetGrid& grid = flipping.grid;
   const Tet tet = grid.tets[at(t)];
   const Facet f = facet_opposite(tet, corner);
   Index other = -1;
@@ -129,12 +143,12 @@ bool remove_face(TetGrid& grid, Index t, std::size_t corner) {
     if (flip_quality(grid, made.back()) < old + kLeastGain) return false;
   }
   if (has_edge(grid, tet[corner], tip)) return false;
-  replace(grid, {t, other}, made);
-  return true;
+  return flipping.replace({t, other}, made);
 }
 
 // the elements that have a or b, with a in place of b
-bool collapse_edge(TetGrid& grid, const FlipGuard& guard, Index a, Index b) {
+bool collapse_edge(Flipping& flipping, Index a, Index b) {
+  const TetGrid& grid = flipping.grid;
   std::vector<Index> old;
   std::vector<Tet> made;
   double before = kInfinity;
@@ -149,21 +163,20 @@ bool collapse_edge(TetGrid& grid, const FlipGuard& guard, Index a, Index b) {
     if (flip_quality(grid, moved) < before + kLeastGain) return false;
     made.push_back(moved);
   }
-  if (made.empty() || !guard.allows_collapse(grid, a, b)) return false;
-  replace(grid, old, made);
-  return true;
+  if (made.empty() || !flipping.guard.allows_collapse(grid, a, b)) return false;
+  return flipping.replace(old, made);
 }
 
-bool improve_around(TetGrid& grid, const FlipGuard& guard, Index t, bool collapse) {
-  const Tet tet = grid.tets[at(t)];
+bool improve_around(Flipping& flipping, Index t, bool collapse) {
+  const Tet tet = flipping.grid.tets[at(t)];
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = i + 1; j < 4; ++j)
-      if (remove_edge(grid, guard, tet[i], tet[j])) return true;
+      if (remove_edge(flipping, tet[i], tet[j])) return true;
   for (std::size_t k = 0; k < 4; ++k)
-    if (remove_face(grid, t, k)) return true;
+    if (remove_face(flipping, t, k)) return true;
   for (std::size_t i = 0; i < 4 && collapse; ++i)
     for (std::size_t j = 0; j < 4; ++j)
-      if (i != j && collapse_edge(grid, guard, tet[i], tet[j])) return true;
+      if (i != j && collapse_edge(flipping, tet[i], tet[j])) return true;
   return false;
 }
 
@@ -176,6 +189,9 @@ double flip_quality(const TetGrid& grid, const Tet& t) {
 Index flip_poor(TetGrid& grid, const SlideGuide& guide, const FlipRules& rules) {
   constexpr int kPasses = 4;
   const FlipGuard guard(guide, rules.tolerance);
+  const auto living =
+      std::count_if(grid.tets.begin(), grid.tets.end(), [](const Tet& t) { return t[0] >= 0; });
+  Flipping flipping{grid, guard, rules.max_tets - living};
   Index changes = 0;
   for (int pass = 0; pass < kPasses; ++pass) {
     std::vector<std::pair<double, Index>> poor;
@@ -187,7 +203,7 @@ Index flip_poor(TetGrid& grid, const SlideGuide& guide, const FlipRules& rules) 
     std::sort(poor.begin(), poor.end());
     Index made = 0;
     for (const auto& [q, t] : poor)
-      if (grid.alive(t) && improve_around(grid, guard, t, rules.collapse)) ++made;
+      if (grid.alive(t) && improve_around(flipping, t, rules.collapse)) ++made;
     changes += made;
     if (made == 0) break;
   }

@@ -10,6 +10,7 @@ struct FlipRules {
   double below = 0.4;       ///< elements of less quality, and their neighbours, are looked at
   double tolerance = 0.05;  ///< mm: how far new boundary facets may be from the surface, or as far
                             ///< as the old ones were
+  int max_tets = 1 << 30;   ///< elements are not made more than this
   bool collapse = true;     ///< edges may vanish, and a node with each
 };
 

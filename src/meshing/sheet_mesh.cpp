@@ -87,11 +87,13 @@ void bring_back_inverted(Extrusion& made, const SlideGuide& guide, MeshingReport
 }
 
 // ridges and tips that are cut off; flips would leave the layers asked for
-void cover_and_raise(TetGrid& grid, const TriMesh& surface, const SlideGuide& guide, bool flips) {
+void cover_and_raise(TetGrid& grid, const TriMesh& surface, const SlideGuide& guide,
+                     const MeshingOptions& options) {
   constexpr int kRounds = 3;
   for (int k = 0; k < kRounds; ++k) {
     if (cover_far_places(grid, surface, {}) == 0) break;
-    if (flips) flip_poor(grid, guide, {.below = 0.35, .collapse = false});
+    if (!options.layers)
+      flip_poor(grid, guide, {.below = 0.35, .max_tets = allowed_tets(options), .collapse = false});
     raise_worst(grid, guide);
   }
 }
@@ -114,13 +116,13 @@ MeshingResult mesh_sheet(const TriMesh& surface, const medial::SurfaceSides& sid
   improve(made.grid, guide, options.improvement_rounds, part_of(monitor, "improve", 0.6, 1.0));
   if (!options.layers && options.improvement_rounds > 0) {
     for (int k = 0; k < 3; ++k) {
-      flip_poor(made.grid, guide, {.below = 0.5});
+      flip_poor(made.grid, guide, {.below = 0.5, .max_tets = allowed_tets(options)});
       update_positions(made.grid, guide, 2.0);
     }
   }
   if (options.improvement_rounds > 0) raise_freely(made.grid, guide);
   draw_back(made.grid, guide);
-  if (options.improvement_rounds > 0) cover_and_raise(made.grid, surface, guide, !options.layers);
+  if (options.improvement_rounds > 0) cover_and_raise(made.grid, surface, guide, options);
   const Index dropped = drop_poor_elements(made.grid);
   if (dropped > 0) {
     result.report.notes.push_back(

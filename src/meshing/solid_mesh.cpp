@@ -43,8 +43,8 @@ TetGrid fill_within(const TriMesh& surface, const TriangleTree& tree, int max_te
     TetGrid grid = stuffed(make_lattice(octree), tree);
     const double filled = static_cast<double>(grid.tets.size()) / max_tets;
     if (filled > 0.0 && filled <= 1.0) return grid;
-    // chord errors go with the square of the edge, and the elements with the area over that square
-    flatness *= filled > 0.0 ? std::max(kCoarser, std::pow(filled, 0.9)) : 0.5;
+    // half the way that a smooth surface would need: cubes change by factors of two
+    flatness *= filled > 0.0 ? std::max(kCoarser, std::sqrt(filled)) : 0.5;
   }
   fail(ErrorCode::below_quality, "no mesh of at most ", max_tets,
        " tetrahedra was found; allow more of them");
@@ -77,12 +77,14 @@ void draw_to_surface(TetGrid& grid, const SlideGuide& guide) {
 
 enum class Connections { may_change, stay };
 
-void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface, int rounds,
-             Connections connections, const Monitor& monitor) {
+void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface,
+             const MeshingOptions& options, Connections connections, const Monitor& monitor) {
+  const int rounds = options.improvement_rounds;
   constexpr int kMeanRounds = 4;  // first the average, then the worst
   constexpr int kCoverRounds = 3;
   const auto flip = [&](double below) {
-    if (connections == Connections::may_change) flip_poor(grid, guide, {.below = below});
+    if (connections == Connections::may_change)
+      flip_poor(grid, guide, {.below = below, .max_tets = options.max_tets.value_or(kMostTets)});
   };
   for (int k = 0; k < rounds; ++k) {
     monitor.check_cancelled();
@@ -128,12 +130,12 @@ MeshingResult mesh_solid(const TriMesh& surface, const MeshingOptions& options,
   draw_to_surface(grid, guide);
   const TetGrid start = grid;
   const Monitor rest = part_of(monitor, "improve", 0.4, 1.0);
-  improve(grid, guide, surface, options.improvement_rounds, Connections::may_change, rest);
+  improve(grid, guide, surface, options, Connections::may_change, rest);
   const Index dropped = drop_poor_elements(grid);
   if (!pinched_nodes(grid).empty()) {
     // where thin parts fold over themselves changed connections may touch: keep the lattice's
     grid = start;
-    improve(grid, guide, surface, options.improvement_rounds, Connections::stay, rest);
+    improve(grid, guide, surface, options, Connections::stay, rest);
   } else if (dropped > 0) {
     result.report.notes.push_back(
         join_text(dropped, " poor elements at the boundary were dropped"));

@@ -76,6 +76,14 @@ TEST(Flips, ReplaceAFaceBetweenFlatElementsByAnEdge) {
   EXPECT_NEAR(test::volume_of(two), volume, 1e-12);
 }
 
+TEST(Flips, MakeNoMoreElementsThanAllowed) {
+  TetGrid grid = spindle(6, 4.0);
+  flip_poor(grid, Anywhere{}, {.below = 0.9, .max_tets = 7, .collapse = false});
+  EXPECT_TRUE(has_edge(grid, 0, 1));
+  flip_poor(grid, Anywhere{}, {.below = 0.9, .max_tets = 8, .collapse = false});
+  EXPECT_FALSE(has_edge(grid, 0, 1));
+}
+
 TEST(Flips, LeaveGoodElementsAlone) {
   TetGrid grid = spindle(5, 0.8);
   EXPECT_EQ(flip_poor(grid, Anywhere{}, {.below = 0.3}), 0);
