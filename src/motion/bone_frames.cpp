@@ -75,20 +75,17 @@ BoneFrame shaft_and_neck_frame(const TriMesh& femur, const Vec3& centre, Side si
   const ProximalFemurAxes axes = proximal_femur_axes(femur, centre, radius);
   const double along = (centre - axes.shaft_point).dot(axes.shaft_direction);
   const Vec3 end = axes.shaft_point + (along - options.femur_length) * axes.shaft_direction;
-  const Vec3 straight = (centre - end).normalized();
-  const auto across = [&](const Vec3& y) {
-    return Vec3((axes.neck_direction - axes.neck_direction.dot(y) * y).normalized());
-  };
-  // the shaft is bowed: its upper part points in front of the knee
-  const double back = side == Side::right ? -options.mean_bow : options.mean_bow;
-  const Vec3 y = rotation_from_vector(back * across(straight)) * straight;
-  const Vec3 lateral = across(y);
+  // version is measured across the shaft, before its bow is allowed for
+  const Vec3 y = (centre - end).normalized();
+  const Vec3 lateral = (axes.neck_direction - axes.neck_direction.dot(y) * y).normalized();
   // the head stands in front of the condyles' axis, so the neck runs back: turn it forward again
   const double turn = side == Side::right ? options.mean_anteversion : -options.mean_anteversion;
   const Vec3 outward = rotation_from_vector(turn * y) * lateral;
   const Vec3 z = side == Side::right ? outward : Vec3(-outward);
   BoneFrame frame;
-  frame.X_IB.R = columns(y.cross(z), y, z);
+  // the shaft is bowed: its upper part points in front of the knee
+  frame.X_IB.R =
+      columns(y.cross(z), y, z) * rotation_from_vector(-options.mean_bow * Vec3::UnitZ());
   frame.source = join_text("shaft and neck (", std::lround(axes.shaft_length),
                            " mm of shaft; mean anteversion assumed)");
   frame.interval = 1.96 * options.anteversion_sd;
