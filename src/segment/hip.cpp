@@ -65,12 +65,16 @@ constexpr double kDoubtfulBone = 0.65, kNarrowShare = 2.0 / 3.0;
 /// mm, of the places where dark lines lie.
 constexpr double kDrawnNoise = 1.0;
 
-/// Keeps of every bone the better found.
+double mean_confidence(const std::vector<Body>& bodies) {
+  double sum = 0.0;
+  for (const Body& body : bodies) sum += quality_of(body).confidence;
+  return sum / static_cast<double>(bodies.size());
+}
+
+/// Keeps the bones that are better found on the whole. (The better of each would not fit each
+/// other: in one search they keep out of each other.)
 void update_best(std::vector<Body>& best, std::vector<Body> others) {
-  for (std::size_t b = 0; b < best.size(); ++b) {
-    if (quality_of(others[b]).confidence > quality_of(best[b]).confidence)
-      best[b] = std::move(others[b]);
-  }
+  if (mean_confidence(others) > mean_confidence(best)) best = std::move(others);
 }
 
 bool any_doubtful(const std::vector<Body>& bodies) {
@@ -220,12 +224,14 @@ std::vector<Surface> Hip::surfaces(std::vector<std::string>& warnings) const {
     sided.push_back({layer, host, models_[s]->n_bone_side});
     names.push_back(models_[s]->name);
   }
-  const std::vector<double> separations = update_extents(sided, images_);
+  const std::vector<FoundExtent> found = update_extents(sided, images_);
   for (std::size_t l = 0; l < sided.size(); ++l) {
-    if (separations[l] >= kTellsApart) continue;
-    warnings.push_back(join_text(
-        "the rims and thickness of the ", names[l], " are the atlas's: the image tells only ",
-        std::lround(100.0 * separations[l]), " % of covered and bare bone apart"));
+    if (found[l].changed()) continue;
+    const std::string why = found[l].folds ? "what the image shows would fold it"
+                                           : join_text("the image tells only ",
+                                                       std::lround(100.0 * found[l].separation),
+                                                       " % of covered and bare bone apart");
+    warnings.push_back("the rims and thickness of the " + names[l] + " are the atlas's: " + why);
   }
   lay_on_hosts(layers, options_.minimum_gap);
   return surfaces;

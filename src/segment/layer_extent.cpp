@@ -180,11 +180,11 @@ void update_layer(TriMesh& layer, const Measured& m, const VecX& thickness) {
 
 }  // namespace
 
-std::vector<double> update_extents(std::vector<ExtentLayer>& layers,
-                                   std::span<const PreparedImage> images) {
+std::vector<FoundExtent> update_extents(std::vector<ExtentLayer>& layers,
+                                        std::span<const PreparedImage> images) {
   std::vector<Measured> all = measured(layers, images);
-  std::vector<double> separations;
-  for (const Measured& m : all) separations.push_back(m.coverage.separation);
+  std::vector<FoundExtent> found;
+  for (const Measured& m : all) found.push_back({m.coverage.separation, false});
   for (std::size_t l = 0; l < layers.size(); ++l) {
     if (all[l].usable()) update_host(*layers[l].host, all[l]);
   }
@@ -199,9 +199,13 @@ std::vector<double> update_extents(std::vector<ExtentLayer>& layers,
   for (std::size_t l = 0; l < layers.size(); ++l)
     thickness.push_back(own_thickness(all[l], opposites[l]));
   for (std::size_t l = 0; l < layers.size(); ++l) {
-    if (all[l].usable()) update_layer(*layers[l].layer, all[l], thickness[l]);
+    if (!all[l].usable()) continue;
+    TriMesh layer = *layers[l].layer;
+    update_layer(layer, all[l], thickness[l]);
+    found[l].folds = !update_unfolded(layer);
+    if (!found[l].folds) *layers[l].layer = std::move(layer);
   }
-  return separations;
+  return found;
 }
 
 }  // namespace coxa::segment

@@ -14,7 +14,7 @@ namespace coxa::segment {
 namespace {
 
 // places tried across the rim, mm apart
-constexpr double kStep = 0.5;
+constexpr double kStep = 0.5, kLongestStep = 1.0;
 // cost of a place d mm away, per mm of rim: kFar d²; against 1 for a millimetre of certain ground
 constexpr double kFar = 0.01;
 // cost of neighbours l mm apart that go d and e: kUneven (d - e)² / l
@@ -70,11 +70,19 @@ Way way_across(const Ground& ground, const Vec3& start, const Vec3& outward, Ind
       direction = (direction - direction.dot(normal) * normal).normalized();
       const double before = ground.score(at);
       const NearestPoint next = ground.foot(at.point + kStep * direction);
+      const Index place = n_each_way + sense * k;
+      // a foot that jumps is on another fold of the host: the way ends here
+      if ((next.point - at.point).norm() > kLongestStep) {
+        for (Index rest = k; rest <= n_each_way; ++rest) {
+          way.places.row(n_each_way + sense * rest) = at.point;
+          way.cost[n_each_way + sense * rest] = kInfinity;
+        }
+        break;
+      }
       // outwards covered ground is won; inwards it is given up
       const double length = (next.point - at.point).norm();
       cost -= sense * length * 0.5 * (before + ground.score(next));
       at = next;
-      const Index place = n_each_way + sense * k;
       const double far = k * kStep;
       way.places.row(place) = at.point;
       way.cost[place] = cost + kFar * far * far;

@@ -100,7 +100,7 @@ struct Found {
 Found found(const PreparedImage& image, double first_cap) {
   Found f{cap_layer(kRadius - 0.6, first_cap, 1.2), test::icosphere(3, kRadius - 0.6), 0.0};
   std::vector<ExtentLayer> layers{{&f.layer, &f.host, f.layer.n_triangles() / 2}};
-  f.separation = update_extents(layers, std::vector<PreparedImage>{image}).front();
+  f.separation = update_extents(layers, std::vector<PreparedImage>{image}).front().separation;
   return f;
 }
 

@@ -16,6 +16,15 @@ struct ExtentLayer {
                           ///< lies opposite triangle i
 };
 
+inline constexpr double kTellsApart = 0.8;
+
+/// What has become of a layer.
+struct FoundExtent {
+  double separation = 0.5;  ///< share of places well inside and outside that the images tell apart
+  bool folds = false;       ///< the layer found would cut itself
+  bool changed() const { return separation >= kTellsApart && !folds; }
+};
+
 /// Where layers end on their bones, how thick they are, and where the bones' borders are beneath
 /// them, as the images' brightness tells (layered_profile.h).
 ///
@@ -23,11 +32,9 @@ struct ExtentLayer {
 /// to where they part; the bone beneath takes the place of its border, the layer the thickness
 /// found. Where two layers touch without anything between, the images show the sum of both only: it
 /// is shared as the layers have it now.
-/// @returns per layer, the share of places well inside and outside that the images tell apart;
-///          a layer with less than `kTellsApart` stays as it is
-std::vector<double> update_extents(std::vector<ExtentLayer>& layers,
-                                   std::span<const PreparedImage> images);
-
-inline constexpr double kTellsApart = 0.75;
+/// A layer stays as it is where the images tell fewer than `kTellsApart` of the places apart, or
+/// where the new one would cut itself.
+std::vector<FoundExtent> update_extents(std::vector<ExtentLayer>& layers,
+                                        std::span<const PreparedImage> images);
 
 }  // namespace coxa::segment
