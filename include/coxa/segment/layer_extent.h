@@ -16,7 +16,7 @@ struct ExtentLayer {
                           ///< lies opposite triangle i
 };
 
-inline constexpr double kTellsApart = 0.8;
+inline constexpr double kTellsApart = 0.78;
 
 /// What has become of a layer.
 struct FoundExtent {
