@@ -51,12 +51,12 @@ Preparation prepared(const shape::StructureModel& model) {
 /// many voxels away.
 constexpr double kVoxelsSearched = 3.0;
 
-/// mm, for the image with the thinnest slices.
-double range_of_search(const std::vector<PreparedImage>& images, const SegmentOptions& options) {
+/// mm, of the image with the thinnest slices.
+double thinnest_slice(const std::vector<PreparedImage>& images) {
   double thinnest = kInfinity;
   for (const PreparedImage& image : images)
     thinnest = std::min(thinnest, image.volume.spacing.maxCoeff());
-  return std::max(options.search_range, kVoxelsSearched * thinnest);
+  return thinnest;
 }
 
 /// A bone's confidence below which it is looked for twice more, in a narrower search (share of the
@@ -141,15 +141,18 @@ void Hip::segment_bones(const shape::Landmarks& landmarks, const Monitor& monito
     bones.push_back(placed_body(*models[b], placed[b]));
     bones.back().prepared = &preparations_[numbers[b]];
   }
-  const double wide = range_of_search(images_, options_);
+  const double slice = thinnest_slice(images_);
+  const double wide = std::max(options_.search_range, kVoxelsSearched * slice);
   choose_contrasts(bones, bone_resolutions(wide).front());
   std::vector<Body> best =
       found_by(bone_resolutions(wide), bones, part_of(monitor, "segment", 0.0, 0.5));
-  // too wide a search may take another border for the bone's
-  if (wide > options_.search_range)
+  // too wide a search may take another border for the bone's; in slices thicker than the usual
+  // range nothing nearer can be asked for
+  const bool thick = slice > options_.search_range;
+  if (wide > options_.search_range && !thick)
     update_best(best, found_by(bone_resolutions(options_.search_range), bones,
                                part_of(monitor, "segment", 0.5, 0.75)));
-  if (any_doubtful(best)) {
+  if (any_doubtful(best) && !thick) {
     auto narrow = bone_resolutions(kNarrowShare * options_.search_range);
     update_best(best, found_by(narrow, bones, part_of(monitor, "segment", 0.75, 0.85)));
     for (std::size_t b = 0; b < bones.size(); ++b) {

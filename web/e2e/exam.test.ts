@@ -12,7 +12,7 @@ let page: Page;
 let faults: string[];
 
 beforeAll(async () => {
-  folder = prepareCase();
+  folder = await prepareCase();
   server = await serve(folder);
   browser = await launch();
   ({ page, faults } = await open(browser, server.url));

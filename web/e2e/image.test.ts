@@ -12,7 +12,7 @@ let page: Page;
 let faults: string[];
 
 beforeAll(async () => {
-  prepareCase();
+  await prepareCase();
   folder = beginSubject("begun", true);
   server = await serve(folder);
   browser = await launch();

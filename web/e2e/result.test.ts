@@ -10,7 +10,7 @@ let page: Page;
 let faults: string[];
 
 beforeAll(async () => {
-  server = await serve(prepareCase());
+  server = await serve(await prepareCase());
   browser = await launch();
   ({ page, faults } = await open(browser, server.url));
 });

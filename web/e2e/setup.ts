@@ -1,4 +1,4 @@
-import { execFileSync, spawn, type ChildProcess } from "node:child_process";
+import { spawn, type ChildProcess } from "node:child_process";
 import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { chromium, type Browser, type Page } from "playwright-core";
@@ -8,12 +8,21 @@ export const coxa = process.env["COXA_BINARY"] ?? resolve(root, "build/release/c
 /** Where the case and the pictures are kept between runs. */
 export const folder = process.env["COXA_E2E_DIR"] ?? resolve(root, "build/web-e2e");
 
+/** Runs coxa to its end. Not the synchronous way: vitest gives up on a worker that is silent for a minute. */
+function run(...words: string[]): Promise<void> {
+  return new Promise((done, failed) => {
+    const child = spawn(coxa, [...words, "--quiet"], { stdio: "inherit" });
+    child.on("error", failed);
+    child.on("exit", (code) => (code === 0 ? done() : failed(new Error(`coxa ${words[0] ?? ""} ended with ${code}`))));
+  });
+}
+
 /** A small real case: a virtual patient, its MRI, and the whole chain run on it; kept while its inputs stay. */
-export function prepareCase(): string {
+export async function prepareCase(): Promise<string> {
   const patient = resolve(folder, "patient");
   if (!existsSync(resolve(patient, "subject.toml"))) {
     mkdirSync(folder, { recursive: true });
-    execFileSync(coxa, ["phantom", "--seed", "3", "--voxel", "1.5", "--out", patient, "--quiet"], { stdio: "inherit" });
+    await run("phantom", "--seed", "3", "--voxel", "1.5", "--out", patient);
     const file = resolve(patient, "subject.toml");
     const text = readFileSync(file, "utf8")
       .replace(/frames = .*/, "frames = 4")
@@ -22,7 +31,7 @@ export function prepareCase(): string {
     writeFileSync(file, text);
   }
   const result = resolve(folder, "result");
-  execFileSync(coxa, ["run", resolve(patient, "subject.toml"), "--out", result, "--resume", "--quiet"], { stdio: "inherit" });
+  await run("run", resolve(patient, "subject.toml"), "--out", result, "--resume");
   for (const left of ["landmarks.mrk.json", "movements"]) rmSync(resolve(result, left), { recursive: true, force: true });
   return result;
 }
