@@ -71,10 +71,13 @@ double mean_confidence(const std::vector<Body>& bodies) {
   return sum / static_cast<double>(bodies.size());
 }
 
-/// Keeps the bones that are better found on the whole. (The better of each would not fit each
-/// other: in one search they keep out of each other.)
+/// Bones of two searches whose mean confidences differ by less are equally well found.
+constexpr double kClearlyBetter = 0.01;
+
+/// Takes other bones that are clearly better found on the whole. (The better of each would not fit
+/// each other: in one search they keep out of each other.)
 void update_best(std::vector<Body>& best, std::vector<Body> others) {
-  if (mean_confidence(others) > mean_confidence(best)) best = std::move(others);
+  if (mean_confidence(others) > mean_confidence(best) + kClearlyBetter) best = std::move(others);
 }
 
 bool any_doubtful(const std::vector<Body>& bodies) {
