@@ -12,19 +12,16 @@ import csv
 import pathlib
 import subprocess
 
+from libhip import surface_path
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 REGIONS = ["superior", "anterosuperior", "anteroinferior", "inferior", "posteroinferior", "posterosuperior"]
-
-
-def surface(folder, name):
-    exact = folder / f"{name}.ply"
-    return exact if exact.exists() else folder / f"{name}_fitted.ply"
 
 
 def subject_file(work, folder, name, frames):
     lines = [f'name = "{name}"', f'side = "{folder.name}"', "[surfaces]"]
     for structure in ("femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"):
-        lines.append(f'{structure} = "{surface(folder, structure).resolve()}"')
+        lines.append(f'{structure} = "{surface_path(folder, structure).resolve()}"')
     lines += ["[motion]", 'pattern = "flexion_internal_rotation"', f"frames = {frames}"]
     path = work / f"{name}.toml"
     path.write_text("\n".join(lines) + "\n")

@@ -17,15 +17,15 @@ import time
 
 import numpy as np
 
+from libhip import surface_path
+
 GROUPS = [("m2", "m4"), ("m5", "m6", "m8"), ("m1", "m3", "m10", "m11")]
 STRUCTURES = ["femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"]
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def truth_path(shared, subject, side, structure):
-    folder = shared / "data/libhip" / subject / side
-    exact = folder / f"{structure}.ply"
-    return exact if exact.exists() else folder / f"{structure}_fitted.ply"
+    return surface_path(shared / "data/libhip" / subject / side, structure)
 
 
 def landmarks_of(shared, subject, side, surfaces):

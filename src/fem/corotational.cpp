@@ -1,4 +1,5 @@
 #include <coxa/fem/material.h>
+#include <coxa/geom/cross_matrix.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -18,12 +19,6 @@ Mat3 positive_part(const Mat3& A) {
   if (minor > 0.0 && A(0, 0) > 0.0 && determinant > 0.0) return A;
   if (minor > 0.0 && A(0, 0) < 0.0 && determinant < 0.0) return Mat3::Zero();
   return tensile_part(A);
-}
-
-Mat3 cross_matrix(const Vec3& v) {
-  Mat3 X;
-  X << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
-  return X;
 }
 
 class Corotational : public PrincipalMaterial {

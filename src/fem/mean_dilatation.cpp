@@ -1,4 +1,5 @@
 #include <coxa/fem/mean_dilatation.h>
+#include <coxa/geom/cross_matrix.h>
 
 #include <coxa/core/error.h>
 
@@ -20,13 +21,6 @@ Mat3 cofactor(const Mat3& F) {
   Mat3 C;
   C << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
   return C;
-}
-
-/// The matrix of v -> w x v.
-Mat3 cross_matrix(const Vec3& w) {
-  Mat3 M;
-  M << 0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0;
-  return M;
 }
 
 /// Elements listed patch by patch.

@@ -1,6 +1,6 @@
 #include "crease_snapping.h"
 
-#include "element_shape.h"
+#include "worst_elements.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,16 +24,6 @@ double mean_edge(const TetGrid& grid, Index v) {
     }
   }
   return count == 0 ? 0.0 : sum / count;
-}
-
-double worst_energy(const TetGrid& grid, Index v) {
-  double worst = 0.0;
-  for (const Index t : grid.around[at(v)]) {
-    const Tet& n = grid.tets[at(t)];
-    worst = std::max(worst, shape_energy(grid.x[at(n[0])], grid.x[at(n[1])], grid.x[at(n[2])],
-                                         grid.x[at(n[3])]));
-  }
-  return worst;
 }
 
 }  // namespace

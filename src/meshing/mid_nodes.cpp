@@ -62,14 +62,6 @@ struct CubicBasis {
   }
 };
 
-TenNodes nodes_of(const TetMesh& mesh, Index t) {
-  TenNodes nodes;
-  for (int k = 0; k < 4; ++k) nodes[static_cast<std::size_t>(k)] = mesh.points.row(mesh.tets(t, k));
-  for (int k = 0; k < 6; ++k)
-    nodes[static_cast<std::size_t>(4 + k)] = mesh.points.row(mesh.mid_nodes(t, k));
-  return nodes;
-}
-
 double ratio_of(const TenNodes& n) {
   const double straight = (n[1] - n[0]).cross(n[2] - n[0]).dot(n[3] - n[0]);
   return jacobian_bounds(n).least / straight;
@@ -116,6 +108,14 @@ void place(TetMesh& mesh, Index first, const std::vector<Edge>& edges,
 
 }  // namespace
 
+TenNodes ten_nodes(const TetMesh& mesh, Index t) {
+  TenNodes nodes;
+  for (int k = 0; k < 4; ++k) nodes[static_cast<std::size_t>(k)] = mesh.points.row(mesh.tets(t, k));
+  for (int k = 0; k < 6; ++k)
+    nodes[static_cast<std::size_t>(4 + k)] = mesh.points.row(mesh.mid_nodes(t, k));
+  return nodes;
+}
+
 JacobianBounds jacobian_bounds(const TenNodes& nodes) {
   static const CubicBasis basis;
   Eigen::Matrix<double, 20, 1> values;
@@ -146,7 +146,7 @@ MidNodeReport update_to_ten_nodes(TetMesh& mesh, const TriangleTree& surface) {
     report.least_ratio = 1.0;
     std::vector<char> poor(edges.size(), 0);
     for (Index t = 0; t < mesh.n_tets(); ++t) {
-      const double ratio = ratio_of(nodes_of(mesh, t));
+      const double ratio = ratio_of(ten_nodes(mesh, t));
       report.least_ratio = std::min(report.least_ratio, ratio);
       for (int k = 0; k < 6 && ratio < kLeastRatio; ++k) poor[at(mesh.mid_nodes(t, k) - first)] = 1;
     }

@@ -10,6 +10,8 @@ namespace coxa::meshing {
 /// Corners and mid-edge nodes of a ten-node element, in VTK's order.
 using TenNodes = std::array<Vec3, 10>;
 
+TenNodes ten_nodes(const TetMesh& mesh, Index t);
+
 /// Least and largest Bernstein coefficient of the Jacobian determinant of a ten-node element, mm³:
 /// the determinant, a cubic polynomial, lies between them everywhere in the element.
 struct JacobianBounds {

@@ -1,7 +1,6 @@
 #include "solid_mesh.h"
 
 #include "cover.h"
-#include "element_shape.h"
 #include "flips.h"
 #include "lattice.h"
 #include "mending.h"
@@ -28,8 +27,6 @@ constexpr double kCoarser = 1.3;       // growth of the flatness when elements a
 constexpr int kSizeTries = 24;
 constexpr int kMostTets = 200000;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 // lattice within the surface of as many elements as allowed
 TetGrid fill_within(const TriMesh& surface, const TriangleTree& tree, int max_tets,
                     double& flatness, const Monitor& monitor) {
@@ -48,16 +45,6 @@ TetGrid fill_within(const TriMesh& surface, const TriangleTree& tree, int max_te
   }
   fail(ErrorCode::below_quality, "no mesh of at most ", max_tets,
        " tetrahedra was found; allow more of them");
-}
-
-double worst_energy(const TetGrid& grid, Index v) {
-  double worst = 0.0;
-  for (const Index t : grid.around[at(v)]) {
-    const Tet& n = grid.tets[at(t)];
-    worst = std::max(worst, shape_energy(grid.x[at(n[0])], grid.x[at(n[1])], grid.x[at(n[2])],
-                                         grid.x[at(n[3])]));
-  }
-  return worst;
 }
 
 // boundary nodes go to the surface, as far as the elements allow it

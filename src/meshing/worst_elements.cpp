@@ -17,6 +17,16 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
+double worst_energy(const TetGrid& grid, Index v) {
+  double worst = 0.0;
+  for (const Index t : grid.around[at(v)]) {
+    const Tet& n = grid.tets[at(t)];
+    worst = std::max(worst, shape_energy(grid.x[at(n[0])], grid.x[at(n[1])], grid.x[at(n[2])],
+                                         grid.x[at(n[3])]));
+  }
+  return worst;
+}
+
 double element_rank(const TetGrid& grid, const Tet& t) {
   const Vec3 &a = grid.x[at(t[0])], &b = grid.x[at(t[1])], &c = grid.x[at(t[2])],
              &d = grid.x[at(t[3])];

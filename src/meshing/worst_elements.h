@@ -9,6 +9,9 @@ namespace coxa::meshing {
 /// largest one over 22 degrees, and its aspect ratio over 0.25; 0 where it is inverted.
 double element_rank(const TetGrid& grid, const Tet& tet);
 
+/// Greatest shape energy of the elements around a node.
+double worst_energy(const TetGrid& grid, Index v);
+
 /// Raises the worst elements: moves the nodes of elements below the limits, by trial steps along
 /// the directions they may slide in, wherever that raises the worst element around the node.
 ///

@@ -1,5 +1,6 @@
 #include "weighted_rotation.h"
 
+#include <coxa/geom/cross_matrix.h>
 #include <coxa/geom/fits.h>
 
 #include <Eigen/Cholesky>
@@ -7,12 +8,6 @@
 #include <utility>
 
 namespace coxa::motion {
-
-Mat3 cross_matrix(const Vec3& v) {
-  Mat3 S;
-  S << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return S;
-}
 
 AxisCovariance same_along_all_axes(const MatX& covariance) {
   return {covariance, covariance, covariance};

@@ -4,8 +4,6 @@
 
 namespace coxa::motion {
 
-Mat3 cross_matrix(const Vec3& v);
-
 /// Rotation of a thigh about the joint centre from markers whose errors have a known covariance.
 ///
 /// With R = R0 exp(delta) the residual R0^T y - x is J delta + error, J = -[x]×; the generalised

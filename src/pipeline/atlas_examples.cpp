@@ -2,6 +2,7 @@
 
 #include <coxa/core/error.h>
 #include <coxa/io/surfaces.h>
+#include <coxa/mesh/mirrored.h>
 #include <coxa/motion/joint_centre.h>
 
 #include <algorithm>
@@ -106,11 +107,6 @@ void drop_structures(ScannedHip& hip, const AtlasExampleOptions& options) {
   }
 }
 
-void mirror(TriMesh& mesh) {
-  mesh.points.col(0) *= -1.0;
-  mesh.triangles.col(1).swap(mesh.triangles.col(2));
-}
-
 VecX cap_trust(const TriMesh& femur) {
   const double lowest = femur.points.col(2).minCoeff();
   if (lowest < -kWholeFemur) return {};
@@ -132,7 +128,7 @@ shape::HipExample as_example(const ScannedHip& hip) {
   for (const auto& [structure, surface] : hip.surfaces) {
     shape::TrustedSurface trusted{surface.mesh, {}};
     trusted.mesh.points.rowwise() -= centre.transpose();
-    if (hip.side == Side::left) mirror(trusted.mesh);
+    if (hip.side == Side::left) trusted.mesh = mirrored(std::move(trusted.mesh));
     const auto trust = hip.trust.find(structure);
     if (trust != hip.trust.end()) trusted.trust = trust->second;
     if (structure == "femur") trusted.trust = cap_trust(trusted.mesh);

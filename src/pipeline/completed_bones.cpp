@@ -3,6 +3,7 @@
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
 #include <coxa/geom/triangle_tree.h>
+#include <coxa/mesh/mirrored.h>
 #include <coxa/mesh/topology.h>
 #include <coxa/mesh/vertex_normals.h>
 #include <coxa/segment/model_fit.h>
@@ -15,11 +16,6 @@ namespace {
 
 // the atlas' hips are right hips: a left one is mirrored at x = 0 on the way in and out
 Vec3 mirrored(const Vec3& p) { return {-p.x(), p.y(), p.z()}; }
-TriMesh mirrored(TriMesh mesh) {
-  mesh.points.col(0) *= -1.0;
-  mesh.triangles.col(1).swap(mesh.triangles.col(2));
-  return mesh;
-}
 
 /// The part of a bone that is in view, to be found from a model.
 class SeenBone {

@@ -11,9 +11,8 @@
 namespace coxa::segment {
 namespace {
 
-// samples along the normal, mm; negative inside
-constexpr double kDeepest = -16.0, kOutermost = 1.5, kStep = 0.5;
-constexpr Index kSamples = static_cast<Index>((kOutermost - kDeepest) / kStep) + 1;
+// 16 mm inwards to 1.5 mm outwards
+const ProfileGrid kGrid{-16.0, 0.5, 36};
 // the border's own cortex lies from there outwards; a line of another border farther in than this
 constexpr double kBorder = -2.5, kFartherIn = -4.0;
 // marrow lies in between for a bone in place, mm
@@ -26,32 +25,21 @@ constexpr double kInPlace = 0.25;
 constexpr int kPasses = 60;
 constexpr double kSilent = 0.02;
 
-Index index_at(double s) { return static_cast<Index>(std::lround((s - kDeepest) / kStep)); }
-
-std::optional<VecX> line_in(const Volume& volume, const Vec3& p, const Vec3& normal) {
-  VecX line(kSamples);
-  for (Index i = 0; i < kSamples; ++i) {
-    line[i] = sample(volume, p + (kDeepest + i * kStep) * normal);
-    if (!std::isfinite(line[i])) return std::nullopt;
-  }
-  return line;
-}
-
 double darkest_at_border(const VecX& line) {
-  return line.tail(kSamples - index_at(kBorder)).minCoeff();
+  return line.tail(kGrid.n - kGrid.index_at(kBorder)).minCoeff();
 }
 
 /// Shift to the outermost dark line inside, mm; 0 where the border is dark itself; none where there
 /// is no dark line at all.
 std::optional<double> shift_of(const VecX& line, double dark) {
   if (darkest_at_border(line) < dark) return 0.0;
-  for (Index i = index_at(kFartherIn); i > 0; --i) {
+  for (Index i = kGrid.index_at(kFartherIn); i > 0; --i) {
     if (line[i] >= dark) continue;
     Index end = i;
     while (end > 0 && line[end - 1] < dark) --end;
     // marrow follows a cortex: a darkness that goes on is no bone's border
     if (end == 0) return std::nullopt;
-    return kDeepest + i * kStep;
+    return kGrid.at(i);
   }
   return std::nullopt;
 }
@@ -66,14 +54,14 @@ Points drawn_to_cortex(const Body& bone, std::span<const PreparedImage> images) 
   parallel_for(n, [&](Index v) {
     for (std::size_t i = 0; i < images.size() && !lines[static_cast<std::size_t>(v)]; ++i)
       lines[static_cast<std::size_t>(v)] =
-          line_in(images[i].volume, mesh.points.row(v), normals.row(v));
+          profile_along(images[i].volume, mesh.points.row(v), normals.row(v), kGrid);
   });
   std::vector<double> borders, marrows;
   for (const auto& line : lines) {
     if (!line) continue;
     borders.push_back(darkest_at_border(*line));
-    const Index from = index_at(kMarrowFrom);
-    marrows.push_back(line->segment(from, index_at(kMarrowTo) - from + 1).mean());
+    const Index from = kGrid.index_at(kMarrowFrom);
+    marrows.push_back(line->segment(from, kGrid.index_at(kMarrowTo) - from + 1).mean());
   }
   if (borders.empty()) return bone.points;
   const double cortex = quantile(borders, kInPlace), marrow = quantile(marrows, 0.5);

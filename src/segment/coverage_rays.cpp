@@ -34,22 +34,12 @@ double blur_along(const Volume& volume, const Vec3& normal) {
   return 0.5 * volume.spacing.cwiseProduct(volume.direction.transpose() * normal).norm();
 }
 
-std::optional<VecX> values_along(const Volume& volume, const Vec3& p, const Vec3& normal) {
-  VecX values(kGrid.n);
-  for (Index i = 0; i < kGrid.n; ++i) {
-    values[i] = sample(volume, p + kGrid.at(i) * normal);
-    if (!std::isfinite(values[i])) return std::nullopt;
-  }
-  return values;
-}
-
-Index index_at(double s) { return static_cast<Index>(std::lround((s - kGrid.first) / kGrid.step)); }
-
 /// Brightnesses of the tissues as the profiles beneath the present layers show them.
 std::optional<TissueBrightness> first_brightness(const std::vector<CoverageRay>& rays,
                                                  std::size_t image) {
-  const Index n_marrow = index_at(kMarrowUpTo) + 1, cortex_end = index_at(kCortexUpTo) + 1;
-  const Index into = index_at(kIntoCartilage) - index_at(0.0);
+  const Index n_marrow = kGrid.index_at(kMarrowUpTo) + 1,
+              cortex_end = kGrid.index_at(kCortexUpTo) + 1;
+  const Index into = kGrid.index_at(kIntoCartilage) - kGrid.index_at(0.0);
   std::vector<double> marrow, darkest, cartilage, variance;
   for (const CoverageRay& ray : rays) {
     if (ray.image != image || ray.rim_distance <= 0.0) continue;
@@ -167,7 +157,7 @@ std::vector<CoverageRay> coverage_rays(std::span<const HostPatch> patches,
       for (std::size_t i = 0; i < images.size(); ++i) {
         const double blur = blur_along(images[i].volume, normal);
         if (ray.profile.size() > 0 && ray.blur <= blur) continue;
-        auto values = values_along(images[i].volume, place, normal);
+        auto values = profile_along(images[i].volume, place, normal, kGrid);
         if (!values) continue;
         ray.profile = std::move(*values);
         ray.blur = blur;

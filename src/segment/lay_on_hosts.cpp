@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interpolated.h"
+
 namespace coxa::segment {
 namespace {
 
@@ -24,13 +26,6 @@ struct Footing {
   std::vector<bool> facing;  // whether the vertex belongs to the side that faces the host
   VecX thickness;            // mm; 0 where facing
 };
-
-Vec3 interpolated(const Points& values, const Triangles& triangles, const NearestPoint& near) {
-  Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < 3; ++k)
-    sum += near.barycentric[k] * values.row(triangles(near.triangle, k)).transpose();
-  return sum;
-}
 
 /// The triangles whose corners all do (or all do not) face the host.
 Triangles one_side(const Triangles& triangles, const std::vector<bool>& facing, bool wanted) {
@@ -81,11 +76,7 @@ class ThicknessAt {
   }
   double operator()(const Vec3& p) const {
     const auto near = tree_ ? tree_->nearest_within(p, kLayerReach) : std::nullopt;
-    if (!near) return 0.0;
-    double sum = 0.0;
-    for (int k = 0; k < 3; ++k)
-      sum += near->barycentric[k] * thickness_[triangles_(near->triangle, k)];
-    return sum;
+    return near ? interpolated(thickness_, triangles_, *near) : 0.0;
   }
 
  private:

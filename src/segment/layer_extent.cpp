@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "coverage.h"
+#include "interpolated.h"
 #include "layer_sheet.h"
 #include "rim_search.h"
 
@@ -59,12 +60,6 @@ std::vector<Measured> measured(const std::vector<ExtentLayer>& layers,
   return all;
 }
 
-double interpolated(const VecX& values, const Triangles& triangles, const NearestPoint& at) {
-  double sum = 0.0;
-  for (int k = 0; k < 3; ++k) sum += at.barycentric[k] * values[triangles(at.triangle, k)];
-  return sum;
-}
-
 /// Takes the host's vertices, and the patch's, to the border found beneath the layer.
 void update_host(TriMesh& host, Measured& m) {
   const VecX weight = m.coverage.known.array().max(kBareWeight);
@@ -109,12 +104,6 @@ std::vector<Opposite> opposites_of(const std::vector<Measured>& all, std::size_t
     others.push_back(std::move(other));
   }
   return others;
-}
-
-double interpolated(const VecX& values, const Triangles& triangles, const RayHit& hit) {
-  double sum = 0.0;
-  for (int k = 0; k < 3; ++k) sum += hit.barycentric[k] * values[triangles(hit.triangle, k)];
-  return sum;
 }
 
 /// Beside the present layer, cartilage for which the other layer leaves no room is the other's:
@@ -166,11 +155,7 @@ void update_layer(TriMesh& layer, const Measured& m, const VecX& thickness) {
     const Index opposite = m.sheet.opposite[static_cast<std::size_t>(v)];
     const Vec3 p = sheet.points.row(v);
     const NearestPoint at = tree.nearest(p);
-    Vec3 normal = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) {
-      normal += at.barycentric[k] *
-                m.patch.normals.row(m.patch.mesh.triangles(at.triangle, k)).transpose();
-    }
+    const Vec3 normal = interpolated(m.patch.normals, m.patch.mesh.triangles, at);
     layer.points.row(v) = p;
     if (opposite == v) continue;
     layer.points.row(opposite) =

@@ -42,6 +42,16 @@ double past(double s, double at, double blur) {
 
 }  // namespace
 
+std::optional<VecX> profile_along(const Volume& volume, const Vec3& p, const Vec3& normal,
+                                  const ProfileGrid& grid) {
+  VecX values(grid.n);
+  for (Index i = 0; i < grid.n; ++i) {
+    values[i] = sample(volume, p + grid.at(i) * normal);
+    if (!std::isfinite(values[i])) return std::nullopt;
+  }
+  return values;
+}
+
 LayerModel::LayerModel(const TissueBrightness& brightness, double blur, const ProfileGrid& grid)
     : brightness_(brightness), grid_(grid) {
   require(blur > 0.0, "the blur of a profile must be positive, got ", blur, " mm");
@@ -120,8 +130,7 @@ double LayerModel::penalty_of_outside(double outside) const {
 
 double LayerModel::likeness_to_bone(const VecX& profile) const {
   const double spread = std::max(kForeignSpread * std::abs(brightness_.marrow), brightness_.noise);
-  const Index n = std::clamp<Index>(
-      static_cast<Index>(std::lround((kMarrowUpTo - grid_.first) / grid_.step)), 1, grid_.n);
+  const Index n = std::clamp<Index>(grid_.index_at(kMarrowUpTo), 1, grid_.n);
   const double off = (profile.head(n).mean() - brightness_.marrow) / spread;
   return std::exp(-0.5 * off * off);
 }

@@ -1,5 +1,7 @@
 #include "result.h"
 
+#include <coxa/mesh/mirrored.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -62,8 +64,7 @@ Surface surface_of(const Body& body) {
 }
 
 Surface mirrored(Surface surface) {
-  surface.mesh.points.col(0) = -surface.mesh.points.col(0);
-  surface.mesh.triangles.col(1).swap(surface.mesh.triangles.col(2));
+  surface.mesh = coxa::mirrored(std::move(surface.mesh));
   return surface;
 }
 

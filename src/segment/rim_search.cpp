@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interpolated.h"
+
 namespace coxa::segment {
 namespace {
 
@@ -31,21 +33,13 @@ class Ground {
       : patch_(patch), score_(score), tree_(patch.mesh.points, patch.mesh.triangles) {}
   NearestPoint foot(const Vec3& p) const { return tree_.nearest(p); }
   Vec3 normal(const NearestPoint& at) const {
-    Vec3 sum = Vec3::Zero();
-    for (int k = 0; k < 3; ++k)
-      sum += at.barycentric[k] * patch_.normals.row(corner(at, k)).transpose();
-    return sum.normalized();
+    return interpolated(patch_.normals, patch_.mesh.triangles, at).normalized();
   }
   double score(const NearestPoint& at) const {
-    double sum = 0.0;
-    for (int k = 0; k < 3; ++k) sum += at.barycentric[k] * score_[corner(at, k)];
-    return sum;
+    return interpolated(score_, patch_.mesh.triangles, at);
   }
 
  private:
-  Index corner(const NearestPoint& at, int k) const {
-    return patch_.mesh.triangles(at.triangle, k);
-  }
   const HostPatch& patch_;
   const VecX& score_;
   TriangleTree tree_;

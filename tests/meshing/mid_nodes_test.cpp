@@ -38,14 +38,6 @@ Vec3 place_in(Rng& rng) {
   }
 }
 
-TenNodes nodes_of(const TetMesh& mesh, Index t) {
-  TenNodes n;
-  for (int k = 0; k < 4; ++k) n[static_cast<std::size_t>(k)] = mesh.points.row(mesh.tets(t, k));
-  for (int k = 0; k < 6; ++k)
-    n[static_cast<std::size_t>(4 + k)] = mesh.points.row(mesh.mid_nodes(t, k));
-  return n;
-}
-
 // exact for the cubic determinant (Keast's five points)
 double volume_of(const TenNodes& n) {
   double sum = -0.8 * determinant_at(n, 0.25, 0.25, 0.25);
@@ -96,7 +88,7 @@ TEST(MidNodes, LieOnTheSurfaceAndMakeABallRound) {
   Rng rng(1);
   double curved = 0.0, flat = 0.0;
   for (Index t = 0; t < mesh.n_tets(); ++t) {
-    const TenNodes n = nodes_of(mesh, t);
+    const TenNodes n = ten_nodes(mesh, t);
     curved += volume_of(n);
     flat += (n[1] - n[0]).cross(n[2] - n[0]).dot(n[3] - n[0]) / 6.0;
     for (int k = 0; k < 5; ++k) {
@@ -124,7 +116,7 @@ TEST(MidNodes, AreDrawnBackWhereTheyWouldInvertAnElement) {
   EXPECT_EQ(report.n_curved, 3);
   EXPECT_EQ(report.n_relaxed, 3);
   EXPECT_GE(report.least_ratio, 0.2);
-  EXPECT_GT(jacobian_bounds(nodes_of(mesh, 0)).least, 0.0);
+  EXPECT_GT(jacobian_bounds(ten_nodes(mesh, 0)).least, 0.0);
 }
 
 }  // namespace

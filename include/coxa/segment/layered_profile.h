@@ -1,7 +1,9 @@
 #pragma once
 
-#include <coxa/core/types.h>
+#include <coxa/image/volume.h>
 
+#include <cmath>
+#include <optional>
 #include <vector>
 
 namespace coxa::segment {
@@ -16,9 +18,14 @@ struct TissueBrightness {
 /// Where a profile is sampled: from `first` mm (negative: inside the bone) in steps, outwards.
 struct ProfileGrid {
   double first = -4.0, step = 0.25;  ///< mm
-  Index n = 45;                      ///< at most 64
+  Index n = 45;
   double at(Index i) const { return first + step * i; }
+  Index index_at(double s) const { return static_cast<Index>(std::lround((s - first) / step)); }
 };
+
+/// Values along a unit normal at p; none where the profile leaves the image.
+std::optional<VecX> profile_along(const Volume& volume, const Vec3& p, const Vec3& normal,
+                                  const ProfileGrid& grid);
 
 /// What a profile says about the layers at a bone's border.
 struct LayerFit {
@@ -42,7 +49,7 @@ struct LayerFit {
 /// Source: layers under a Gaussian blur, Treece et al. 2010 (cortex in CT); hypotheses ours
 class LayerModel {
  public:
-  /// @param blur mm, standard deviation along the normal, > 0
+  /// @param blur mm, standard deviation along the normal, > 0   @param grid of 2 to 64 samples
   LayerModel(const TissueBrightness& brightness, double blur, const ProfileGrid& grid = {});
 
   /// @param profile values on the grid, finite
@@ -57,7 +64,7 @@ class LayerModel {
     MatX basis;                ///< samples × unknown brightnesses
     MatX gain;                 ///< unknowns × samples: of the profile less what is fixed
     VecX start;                ///< unknowns where that is 0
-    VecX prior, weight;        ///< of the unknowns: mean, 1 / (2 variance)
+    VecX prior, weight;        ///< of the unknowns: mean, 1 / variance
   };
   struct Outcome {
     double cost = kInfinity;
