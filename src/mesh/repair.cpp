@@ -1,5 +1,6 @@
 #include <coxa/mesh/repair.h>
 
+#include "crowded_edges.h"
 #include "editable_mesh.h"
 #include "fill_holes.h"
 #include "surface_parts.h"
@@ -17,15 +18,6 @@
 
 namespace coxa {
 namespace {
-
-// the triangles not marked, and the vertices they use
-TriMesh without(const TriMesh& mesh, const std::vector<bool>& marked) {
-  std::vector<Index> kept;
-  for (Index t = 0; t < mesh.n_triangles(); ++t)
-    if (!marked[static_cast<std::size_t>(t)]) kept.push_back(t);
-  if (kept.empty()) fail(ErrorCode::bad_mesh, "no triangle of the surface is usable");
-  return sub_mesh(mesh, kept).mesh;
-}
 
 TriMesh merge_points(TriMesh mesh, double distance, RepairReport& report) {
   // every vertex goes to the first earlier one within the distance, found in a window of the order
@@ -62,61 +54,18 @@ TriMesh drop_degenerate_and_duplicates(const TriMesh& mesh, RepairReport& report
       keys.push_back({v[0], v[1], v[2], t});
   }
   std::sort(keys.begin(), keys.end());
-  for (std::size_t i = 1; i < keys.size(); ++i)
-    if (std::equal(keys[i].begin(), keys[i].begin() + 3, keys[i - 1].begin()))
-      marked[static_cast<std::size_t>(keys[i][3])] = true;
-  report.dropped_triangles += static_cast<Index>(std::count(marked.begin(), marked.end(), true));
-  return without(mesh, marked);
-}
-
-// triangles that hang on an edge with more than two triangles and end in the open
-TriMesh drop_fins(TriMesh mesh, RepairReport& report) {
-  while (true) {
-    const MeshEdges edges = mesh_edges(mesh);
-    std::vector<bool> marked(static_cast<std::size_t>(mesh.n_triangles()), false);
-    for (Index t = 0; t < mesh.n_triangles(); ++t) {
-      bool crowded = false, open = false;
-      for (int k = 0; k < 3; ++k) {
-        const std::size_t n = edges.triangles[edges.of_triangle(t, k)].size();
-        crowded = crowded || n > 2;
-        open = open || n == 1;
-      }
-      marked[static_cast<std::size_t>(t)] = crowded && open;
-    }
-    const auto n_fins = std::count(marked.begin(), marked.end(), true);
-    if (n_fins == 0) return mesh;
-    report.dropped_triangles += static_cast<Index>(n_fins);
-    mesh = without(mesh, marked);
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    if (!std::equal(keys[i].begin(), keys[i].begin() + 3, keys[i - 1].begin())) continue;
+    const Index first = keys[i - 1][3], second = keys[i][3];
+    marked[static_cast<std::size_t>(second)] = true;
+    // two that run opposite ways are a wall without thickness
+    if (marked[static_cast<std::size_t>(first)]) continue;
+    if (runs_along(mesh, first, keys[i][0], keys[i][1]) !=
+        runs_along(mesh, second, keys[i][0], keys[i][1]))
+      marked[static_cast<std::size_t>(first)] = true;
   }
-}
-
-void refuse_crowded_edges(const TriMesh& mesh) {
-  const MeshEdges edges = mesh_edges(mesh);
-  for (Index e = 0; e < edges.vertices.rows(); ++e)
-    if (edges.triangles[e].size() > 2) {
-      const Vec3 p = mesh.points.row(edges.vertices(e, 0));
-      fail(ErrorCode::bad_mesh, edges.triangles[e].size(), " triangles share an edge at (", p[0],
-           ", ", p[1], ", ", p[2], ") mm");
-    }
-}
-
-TriMesh split_touching_sheets(TriMesh mesh, RepairReport& report) {
-  const auto fans = vertex_fans(mesh);
-  Index next = mesh.n_vertices();
-  for (const auto& fan_list : fans)
-    next += fan_list.empty() ? 0 : static_cast<Index>(fan_list.size()) - 1;
-  const Index n_old = mesh.n_vertices();
-  mesh.points.conservativeResize(next, 3);
-  next = n_old;
-  for (Index v = 0; v < n_old; ++v)
-    for (std::size_t fan = 1; fan < fans[static_cast<std::size_t>(v)].size(); ++fan, ++next) {
-      mesh.points.row(next) = mesh.points.row(v);
-      for (Index t : fans[static_cast<std::size_t>(v)][fan])
-        for (int k = 0; k < 3; ++k)
-          if (mesh.triangles(t, k) == v) mesh.triangles(t, k) = next;
-      ++report.split_vertices;
-    }
-  return mesh;
+  report.dropped_triangles += static_cast<Index>(std::count(marked.begin(), marked.end(), true));
+  return without_marked(mesh, marked);
 }
 
 // turns triangles to agree with the lowest one of their piece
@@ -133,6 +82,7 @@ TriMesh orient_alike(TriMesh mesh, RepairReport& report) {
       pending.pop_back();
       for (int k = 0; k < 3; ++k) {
         const Index e = edges.of_triangle(t, k);
+        if (edges.triangles[e].size() != 2) continue;
         for (Index other : edges.triangles[e]) {
           if (other == t) continue;
           const Index a = edges.vertices(e, 0), b = edges.vertices(e, 1);
@@ -243,7 +193,11 @@ std::vector<std::string> RepairReport::lines() const {
   };
   say(merged_points, "points merged with another");
   say(dropped_points, "unused points dropped");
-  say(dropped_triangles, "degenerate, duplicate or dangling triangles dropped");
+  if (dropped_triangles > 0)
+    lines.push_back(join_text(
+        dropped_triangles, " degenerate, duplicate or dangling triangles dropped, which reached ",
+        dropped_reach, " mm from what stays"));
+  say(parted_edges, "edges made where more than two triangles shared one");
   say(split_vertices, "vertices doubled where sheets touched");
   say(turned_triangles, "triangles turned");
   if (filled_holes > 0)
@@ -264,10 +218,10 @@ Repaired repair(const TriMesh& mesh, const RepairOptions& options) {
   report.dropped_points = count_unused(mesh);
   surface = merge_points(surface, options.merge_distance, report);
   surface = drop_degenerate_and_duplicates(surface, report);
-  surface = drop_fins(surface, report);
-  refuse_crowded_edges(surface);
-  surface = split_touching_sheets(surface, report);
+  surface = drop_hanging_sheets(surface, report);
   surface = orient_alike(surface, report);
+  surface = part_at_crowded_edges(surface, report);
+  surface = split_touching_sheets(surface, report);
   surface = fill_holes(surface, options.max_hole, report);
   surface = remove_slivers(surface, options.sliver_ratio, report);
   surface = untangle(surface, options, report);

@@ -21,6 +21,8 @@ struct RepairReport {
   Index merged_points = 0;
   Index dropped_points = 0;     ///< that no triangle used
   Index dropped_triangles = 0;  ///< without area by their numbers, duplicates, fins
+  double dropped_reach = 0.0;   ///< mm, of the farthest dropped triangle from those that stay
+  Index parted_edges = 0;       ///< new in place of edges with more than two triangles
   Index split_vertices = 0;     ///< copies made where sheets touched in one vertex
   Index turned_triangles = 0;   ///< orientation reversed
   Index filled_holes = 0;
@@ -41,10 +43,10 @@ struct Repaired {
 
 /// Closed, manifold, outward surface without self-intersections, from one that nearly is.
 ///
-/// In turn: merges points, drops degenerate and duplicate triangles and fins, separates sheets that
-/// touch, turns triangles to agree, fills holes with the least area, removes slivers, cuts
-/// self-intersections out and fills again, turns pieces outward. A surface without fault comes back
-/// as it is.
+/// In turn: merges points, drops degenerate and duplicate triangles and hanging sheets without
+/// thickness, turns triangles to agree, separates what touches in an edge or a vertex, by 0.04 mm
+/// at most, fills holes with the least area, removes slivers, cuts self-intersections out and fills
+/// again, turns pieces outward. A surface without fault comes back as it is.
 /// @throws Error bad_mesh, naming the place, for what cannot be repaired so
 Repaired repair(const TriMesh& mesh, const RepairOptions& options = {});
 
