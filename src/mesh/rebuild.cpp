@@ -149,6 +149,37 @@ std::vector<float> opened(const std::vector<float>& values, const Grid& grid, do
   return distance;
 }
 
+// even triangles of the length asked for or less; at rims too sharp for them those of the grid
+TriMesh even_triangles(const TriMesh& raw, double target_edge) {
+  for (const double share : {1.0, 0.6}) {
+    TriMesh even = remesh(raw, {.target_edge = share * target_edge});
+    // long edges fold at sharp rims
+    if (update_unfolded(even) && validate(even).valid()) return even;
+  }
+  return raw;
+}
+
+// how far the new surface is from the old one, and what of the old one it leaves out
+void update_moves(const TriMesh& mesh, const TriangleTree& old_surface, double max_move,
+                  Rebuilt& result) {
+  for (const auto& p : result.mesh.points.rowwise()) {
+    const double move = std::sqrt(old_surface.nearest(p.transpose()).squared_distance);
+    result.largest_move = std::max(result.largest_move, move);
+    if (move > max_move)
+      fail(ErrorCode::bad_mesh, "a new surface would lie ", move, " mm from the old one at (", p[0],
+           ", ", p[1], ", ", p[2], ") mm, more than ", max_move, " mm");
+  }
+  const TriangleTree new_surface(result.mesh.points, result.mesh.triangles);
+  for (Index t = 0; t < mesh.n_triangles(); ++t) {
+    const Vec3 middle = mesh.points(mesh.triangles.row(t), Eigen::all).colwise().mean();
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 corner = mesh.points.row(mesh.triangles(t, k));
+      for (const Vec3& p : {corner, Vec3(0.5 * (corner + middle))})
+        result.largest_loss = std::max(result.largest_loss, new_surface.signed_distance(p));
+    }
+  }
+}
+
 }  // namespace
 
 Rebuilt rebuild(const TriMesh& mesh, const RebuildOptions& options) {
@@ -173,18 +204,8 @@ Rebuilt rebuild(const TriMesh& mesh, const RebuildOptions& options) {
   const auto position = [&](const Vec3& index) { return Vec3(grid.origin + grid.spacing * index); };
   const TriMesh raw = without_crumbs(iso_surface(grid.size, values, 0.0, position));
 
-  Rebuilt result{remesh(raw, {.target_edge = options.target_edge})};
-  update_unfolded(result.mesh);  // long edges fold at sharp rims; what stays is found below
-  for (Index v = 0; v < result.mesh.n_vertices(); ++v) {
-    const Vec3 p = result.mesh.points.row(v);
-    const double move = std::sqrt(old_surface.nearest(p).squared_distance);
-    result.largest_move = std::max(result.largest_move, move);
-    if (move > options.max_move)
-      fail(ErrorCode::bad_mesh, "a new surface would lie ", move, " mm from the old one at (", p[0],
-           ", ", p[1], ", ", p[2], ") mm, more than ", options.max_move, " mm");
-  }
-  if (const ValidityReport report = validate(result.mesh); !report.valid())
-    fail(ErrorCode::bad_mesh, "rebuilding left faults: ", report.text());
+  Rebuilt result{even_triangles(raw, options.target_edge)};
+  update_moves(mesh, old_surface, options.max_move, result);
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include "element_shape.h"
 #include "grid_topology.h"
+#include "surface_places.h"
 #include "tet_boundary.h"
 #include "worst_elements.h"
 
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 namespace coxa::meshing {
@@ -19,6 +21,15 @@ namespace {
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double kMuchTooFar = 0.2;  // mm
+// ranks of elements (see `element_rank`) around a node that is moved, and where it is urgent
+constexpr double kRank = 1.0, kUrgentRank = 0.85;
+
+// of ascending lists
+std::vector<Index> united(const std::vector<Index>& a, const std::vector<Index>& b) {
+  std::vector<Index> all;
+  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(all));
+  return all;
+}
 
 struct Place {
   Vec3 p = Vec3::Zero();
@@ -26,20 +37,23 @@ struct Place {
   double distance = 0.0;
 };
 
-// vertices and edge midpoints of the surface, and where the boundary is nearest to them
+double mean_edge(const TetGrid& grid, const Triangles& facets) {
+  double sum = 0.0;
+  for (Index f = 0; f < facets.rows(); ++f)
+    for (int k = 0; k < 3; ++k)
+      sum += (grid.x[at(facets(f, k))] - grid.x[at(facets(f, (k + 1) % 3))]).norm();
+  return sum / (3.0 * static_cast<double>(facets.rows()));
+}
+
+// places of the surface, and where the boundary is nearest to them
 std::vector<Place> places_of(const TetGrid& grid, const TriMesh& surface) {
+  constexpr double kSpacing = 0.4;  // along ridges, of the mean edge of the boundary
+  const Triangles facets = boundary_of(grid);
   std::vector<Place> places;
-  for (Index v = 0; v < surface.n_vertices(); ++v) places.push_back({surface.points.row(v), {}, 0});
-  for (Index t = 0; t < surface.n_triangles(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const Index a = surface.triangles(t, k), b = surface.triangles(t, (k + 1) % 3);
-      if (a < b)
-        places.push_back(
-            {0.5 * (surface.points.row(a) + surface.points.row(b)).transpose(), {}, 0});
-    }
+  for (const Vec3& p : places_on(surface, kSpacing * mean_edge(grid, facets)))
+    places.push_back({p, {}, 0.0});
   Points points(static_cast<Index>(grid.x.size()), 3);
   for (std::size_t v = 0; v < grid.x.size(); ++v) points.row(static_cast<Index>(v)) = grid.x[v];
-  const Triangles facets = boundary_of(grid);
   const TriangleTree tree(points, facets);
   parallel_for(static_cast<std::int64_t>(places.size()), [&](Index i) {
     Place& place = places[at(i)];
@@ -81,13 +95,82 @@ class Cover {
     return false;
   }
 
+  // an edge of the nearest facet gets a new node there
+  // @returns elements more, at most `room`; 0 where no edge can be split
+  Index split_to(const Place& place, double worst, std::ptrdiff_t room) {
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 &a = grid_.x[at(place.facet[k])], &b = grid_.x[at(place.facet[(k + 1) % 3])];
+      order.emplace_back(closest_point_on_triangle(place.p, a, b, b).squared_distance, k);
+    }
+    std::sort(order.begin(), order.end());
+    for (const auto& [distance, k] : order)
+      if (const Index more =
+              try_split(place.facet[k], place.facet[(k + 1) % 3], place.p, worst, room))
+        return more;
+    return 0;
+  }
+
  private:
+  static double rank_for(double missed) { return missed > kMuchTooFar ? kUrgentRank : kRank; }
+
+  // the elements around the edge, each in two with a new node at the target
+  Index try_split(Index a, Index b, const Vec3& target, double worst, std::ptrdiff_t room) {
+    if (!has_edge(grid_, a, b) || !edge_on_boundary(grid_, a, b)) return 0;
+    const std::vector<Index> old = ring_around(grid_, a, b).tets;
+    if (old.empty() || std::ssize(old) > room) return 0;
+    std::vector<Tet> before, made;
+    const auto v = static_cast<Index>(grid_.x.size());
+    for (const Index t : old) {
+      before.push_back(grid_.tets[at(t)]);
+      for (const Index end : {a, b}) {
+        made.push_back(before.back());
+        std::replace(made.back().begin(), made.back().end(), end, v);
+      }
+    }
+    const double missed = farthest({a, b}, united(near_[at(a)], near_[at(b)]));
+    const double wanted = std::min(rank_for(missed), worst_rank(before));
+    add_node(a, b, target);
+    for (const Index t : old) grid_.remove(t);
+    std::vector<Index> numbers;
+    for (const Tet& t : made) numbers.push_back(grid_.add(t));
+    if (worst_rank(made) >= wanted && energy_around(v) <= 3.0 * worst &&
+        farthest({a, b, v}, near_[at(v)]) <= missed)
+      return static_cast<Index>(made.size() - before.size());
+    for (const Index t : numbers) grid_.remove(t);
+    for (const Tet& t : before) grid_.add(t);
+    drop_last_node();
+    return 0;
+  }
+
+  void add_node(Index a, Index b, const Vec3& p) {
+    grid_.x.push_back(p);
+    grid_.kinds.push_back(kept(grid_.kinds[at(on_first_face(grid_.kinds[at(a)]) ? a : b)]));
+    grid_.levels.push_back(0.5 * (grid_.levels[at(a)] + grid_.levels[at(b)]));
+    grid_.reach.push_back(0.0);
+    grid_.around.emplace_back();
+    near_.push_back(united(near_[at(a)], near_[at(b)]));
+  }
+  void drop_last_node() {
+    grid_.x.pop_back();
+    grid_.kinds.pop_back();
+    grid_.levels.pop_back();
+    grid_.reach.pop_back();
+    grid_.around.pop_back();
+    near_.pop_back();
+  }
+  double worst_rank(const std::vector<Tet>& tets) const {
+    double worst = kInfinity;
+    for (const Tet& t : tets) worst = std::min(worst, element_rank(grid_, t));
+    return worst;
+  }
+
   bool try_node(Index v, const Vec3& target, double worst) {
     const Vec3 old = grid_.x[at(v)];
     const double before = farthest_near(v);
     // what is much too far is worth elements nearer to the limits
     const bool urgent = before > kMuchTooFar;
-    const double wanted = std::min(urgent ? 0.85 : 1.0, rank_around(v));
+    const double wanted = std::min(rank_for(before), rank_around(v));
     const double allowed = std::max(urgent ? 3.0 * worst : worst, energy_around(v));
     for (const double share : {1.0, 0.75, 0.5}) {
       grid_.x[at(v)] = old + share * (target - old);
@@ -116,17 +199,20 @@ class Cover {
     return worst;
   }
 
-  // of the places near the facets around v
-  double farthest_near(Index v) const {
+  double farthest_near(Index v) const { return farthest({v}, near_[at(v)]); }
+
+  // of some places from the facets around some nodes
+  double farthest(const std::vector<Index>& nodes, const std::vector<Index>& places) const {
     std::vector<Facet> facets;
-    for (const Index t : grid_.around[at(v)])
-      for (std::size_t k = 0; k < 4; ++k) {
-        if (grid_.tets[at(t)][k] == v) continue;
-        const Facet f = facet_opposite(grid_.tets[at(t)], k);
-        if (on_boundary(grid_, f)) facets.push_back(f);
-      }
+    for (const Index v : nodes)
+      for (const Index t : grid_.around[at(v)])
+        for (std::size_t k = 0; k < 4; ++k) {
+          if (grid_.tets[at(t)][k] == v) continue;
+          const Facet f = facet_opposite(grid_.tets[at(t)], k);
+          if (on_boundary(grid_, f)) facets.push_back(f);
+        }
     double farthest = 0.0;
-    for (const Index i : near_[at(v)]) {
+    for (const Index i : places) {
       double nearest = kInfinity;
       for (const auto& [a, b, c] : facets)
         nearest = std::min(nearest, closest_point_on_triangle(places_[at(i)].p, grid_.x[at(a)],
@@ -153,7 +239,15 @@ Index cover_far_places(TetGrid& grid, const TriMesh& surface, const CoverOptions
                    [](const Place& a, const Place& b) { return a.distance > b.distance; });
   Cover cover(grid, std::move(places));
   Index drawn = 0;
-  for (const Place& place : far) drawn += cover.draw_to(place, options.worst);
+  std::ptrdiff_t room = options.room;
+  for (const Place& place : far) {
+    if (cover.draw_to(place, options.worst)) {
+      ++drawn;
+    } else if (const Index more = cover.split_to(place, options.worst, room)) {
+      room -= more;
+      ++drawn;
+    }
+  }
   return drawn;
 }
 

@@ -38,6 +38,18 @@ SheetLikeness likeness_of(const medial::SurfaceSides& sides) {
   return result;
 }
 
+int limits_missed(const MeshingReport& report) {
+  const TetQuality& q = report.quality;
+  return (q.aspect_mean < 0.72) + (q.aspect_p05 < 0.5) + (q.aspect_min < 0.15) +
+         (q.dihedral_min < radians(10.0)) + (q.dihedral_max > radians(165.0)) +
+         (report.envelope > 0.3);
+}
+
+bool nearer_to_limits(const MeshingReport& a, const MeshingReport& b) {
+  const int missed_a = limits_missed(a), missed_b = limits_missed(b);
+  return missed_a < missed_b || (missed_a == missed_b && a.envelope < b.envelope);
+}
+
 MeshingResult solid_because(const std::string& why, const SheetLikeness& likeness,
                             const TriMesh& surface, const MeshingOptions& options,
                             const Monitor& monitor) {
@@ -67,7 +79,7 @@ MeshingResult straight_mesh(const TriMesh& surface, const MeshingOptions& option
         join_text("the medial grid gave a mean aspect ratio of ", sheet.report.quality.aspect_mean,
                   " and an envelope error of ", sheet.report.envelope, " mm"),
         likeness, surface, options, monitor);
-    return meets_limits(solid.report) ? solid : sheet;
+    return nearer_to_limits(solid.report, sheet.report) ? solid : sheet;
   } catch (const Error& error) {
     if (!may_choose || error.code() == ErrorCode::cancelled) throw;
     MeshingResult solid = solid_because(join_text("the medial grid failed: ", error.what()),
@@ -89,12 +101,7 @@ void add_mid_nodes(const TriMesh& surface, MeshingResult& result) {
 
 }  // namespace
 
-bool meets_limits(const MeshingReport& report) {
-  const TetQuality& q = report.quality;
-  return q.aspect_mean >= 0.72 && q.aspect_p05 >= 0.5 && q.aspect_min >= 0.15 &&
-         q.dihedral_min >= radians(10.0) && q.dihedral_max <= radians(165.0) &&
-         report.envelope <= 0.3;
-}
+bool meets_limits(const MeshingReport& report) { return limits_missed(report) == 0; }
 
 SheetLikeness sheet_likeness(const TriMesh& surface) {
   require_closed_manifold(surface, "surface to fill with tetrahedra");

@@ -86,12 +86,15 @@ void bring_back_inverted(Extrusion& made, const SlideGuide& guide, MeshingReport
         join_text(dropped, " crumpled cells were left out, of ", made.cells.size()));
 }
 
-// ridges and tips that are cut off; flips would leave the layers asked for
+// ridges and tips that are cut off; flips and splits would leave the layers asked for
 void cover_and_raise(TetGrid& grid, const TriMesh& surface, const SlideGuide& guide,
                      const MeshingOptions& options) {
   constexpr int kRounds = 3;
   for (int k = 0; k < kRounds; ++k) {
-    if (cover_far_places(grid, surface, {}) == 0) break;
+    const auto living =
+        std::count_if(grid.tets.begin(), grid.tets.end(), [](const Tet& t) { return t[0] >= 0; });
+    const std::ptrdiff_t room = options.layers ? 0 : allowed_tets(options) - living;
+    if (cover_far_places(grid, surface, {.room = room}) == 0) break;
     if (!options.layers)
       flip_poor(grid, guide, {.below = 0.35, .max_tets = allowed_tets(options), .collapse = false});
     raise_worst(grid, guide);

@@ -80,7 +80,13 @@ void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface,
     draw_to_surface(grid, guide);
     if (k > 0) flip(0.5);
   }
-  for (int k = 0; k < kCoverRounds && cover_far_places(grid, surface, {}) > 0; ++k) {
+  const auto room = [&]() -> std::ptrdiff_t {
+    const auto living =
+        std::count_if(grid.tets.begin(), grid.tets.end(), [](const Tet& t) { return t[0] >= 0; });
+    return connections == Connections::may_change ? options.max_tets.value_or(kMostTets) - living
+                                                  : 0;
+  };
+  for (int k = 0; k < kCoverRounds && cover_far_places(grid, surface, {.room = room()}) > 0; ++k) {
     flip(0.5);
     update_positions(grid, guide, 3.0);
   }
@@ -90,6 +96,11 @@ void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface,
   }
   if (rounds > 0) raise_freely(grid, guide);
   draw_back(grid, guide);
+  for (int k = 0; rounds > 0 && k < kCoverRounds; ++k) {
+    if (cover_far_places(grid, surface, {.room = room()}) == 0) break;
+    flip(0.35);
+    raise_worst(grid, guide);
+  }
 }
 
 void add_notes(const TriMesh& surface, double flatness, MeshingReport& report) {

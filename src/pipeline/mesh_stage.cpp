@@ -54,8 +54,9 @@ TriMesh made_valid(TriMesh surface, const ValidityReport& before, const std::str
   try {
     const Rebuilt rebuilt =
         rebuild(surface, {.spacing = kRebuildSpacing, .target_edge = kRebuildEdge});
-    changes.push_back(join_text("made anew around what it encloses, since ", refusal, "; at most ",
-                                rebuilt.largest_move, " mm from where it was"));
+    changes.push_back(join_text(
+        "made anew around what it encloses, since ", refusal, "; at most ", rebuilt.largest_move,
+        " mm from where it was; what is left out reached ", rebuilt.largest_loss, " mm farther"));
     return rebuilt.mesh;
   } catch (const Error& error) {
     fail(error.code(), name, ": ", refusal, "; ", error.what());

@@ -18,14 +18,15 @@ struct RebuildOptions {
 struct Rebuilt {
   TriMesh mesh;
   double largest_move = 0.0;  ///< mm, largest distance of the new surface from the old one
+  double largest_loss = 0.0;  ///< mm, how far the old surface reaches out of the new one at most
 };
 
 /// A new closed surface around whatever the old one encloses: for surfaces that `repair` refuses.
 ///
 /// A grid sample is inside where most of six axis directions say so by counting directed crossings,
 /// so holes, inner walls, doubled sheets and wrong orientations in places do not matter. The zero
-/// level of the distance signed so is remeshed; pieces below a hundredth of the largest one's area
-/// are dropped.
+/// level of the distance signed so is remeshed, unless even triangles fold; pieces below a
+/// hundredth of the largest one's area are dropped.
 /// @throws Error   bad_mesh if nothing is enclosed, or the new surface would be farther off than
 ///                 `max_move`
 Rebuilt rebuild(const TriMesh& mesh, const RebuildOptions& options = {});

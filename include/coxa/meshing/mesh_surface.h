@@ -76,7 +76,7 @@ SheetLikeness sheet_likeness(const TriMesh& surface);
 ///
 /// `Method::automatic` takes the medial grid for a sheet and the lattice for any other body, and
 /// also where the medial grid fails, or, unless layers or a number of elements are asked for, where
-/// it misses a limit of quality that the lattice meets; the notes say why.
+/// it misses more limits of quality than the lattice; the notes say why.
 ///
 /// @param surface  closed, manifold, oriented outward, not self-intersecting, mm
 /// @throws Error   bad_mesh if the surface cannot be filled, naming the place; bad_input for an
