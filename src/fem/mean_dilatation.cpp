@@ -3,25 +3,18 @@
 
 #include <coxa/core/error.h>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 
+#include "cofactor.h"
 #include "element_assembly.h"
 
 namespace coxa::fem {
 namespace {
 
 using Size = std::size_t;
-
-/// dJ/dF.
-Mat3 cofactor(const Mat3& F) {
-  Mat3 C;
-  C << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
-  return C;
-}
 
 /// Elements listed patch by patch.
 struct PatchList {

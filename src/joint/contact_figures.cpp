@@ -17,7 +17,7 @@ constexpr double kHigh = 0.5;
 
 std::vector<collide::ContactSample> samples_in_contact(const HipSystem& system,
                                                        const HipState& state) {
-  const collide::SurfaceContact& contact = state.contact;
+  const collide::SurfaceContact& contact = state.contact.cartilages();
   VecX overlap = VecX::Zero(contact.slave().n_vertices());
   for (const collide::ContactConstraint& constraint : contact.constraints()) {
     const double p = contact.pressure(constraint, state.x);

@@ -7,13 +7,25 @@
 namespace coxa::joint {
 namespace {
 
+// the solid's share of cartilage: when its fluid is out, no more volume can go
+// (60 to 85 % of its weight is water)
+constexpr double kSolidShare = 0.25;
+// what the solid resists with, in confined moduli of the tissue: much stiffer, and still solvable
+constexpr double kSolidStiffness = 100.0;
+
+std::unique_ptr<fem::Material> compacting(std::unique_ptr<fem::Material> law,
+                                          const fem::Lame& lame) {
+  const double confined = lame.lambda + 2.0 * lame.mu;
+  return fem::make_compacting(std::move(law), {kSolidShare, kSolidStiffness * confined});
+}
+
 std::unique_ptr<fem::Material> make_law(const CartilageMaterial& material) {
   const fem::Lame lame = fem::lame_from(material.youngs_modulus, material.poissons_ratio);
   switch (material.law) {
     case MaterialLaw::corotational:
-      return fem::make_corotational(lame);
+      return compacting(fem::make_corotational(lame), lame);
     case MaterialLaw::st_venant_kirchhoff:
-      return fem::make_st_venant_kirchhoff(lame);
+      return compacting(fem::make_st_venant_kirchhoff(lame), lame);
     case MaterialLaw::neo_hookean:
       break;
   }

@@ -85,14 +85,6 @@ Vec3 translation_slope(const collide::SurfaceContact& contact,
 
 }  // namespace
 
-Vec3 contact_force(const collide::SurfaceContact& contact, const VecX& x) {
-  Vec3 sum = Vec3::Zero();
-  for (const collide::ContactConstraint& constraint : contact.constraints()) {
-    sum += contact.pressure(constraint, x) * constraint.area * constraint.normal;
-  }
-  return sum;
-}
-
 Equilibrium::Equilibrium(const HipSystem& system, LoadMode mode, const JointOptions& options)
     : system_(system),
       mode_(mode),
@@ -109,7 +101,7 @@ void ElasticState::update(const VecX& x) {
 
 VecX Equilibrium::node_forces(const HipState& state) {
   VecX sum = elastic_.force(state.x);
-  state.contact.add_force(state.x, VecX(), sum);
+  state.contact.add_force(state.x, sum);
   return sum;
 }
 
@@ -117,10 +109,9 @@ VecX Equilibrium::residual(const HipState& state, const Vec3& force) {
   return residual(state.x, state.contact, force);
 }
 
-VecX Equilibrium::residual(const VecX& x, const collide::SurfaceContact& contact,
-                           const Vec3& force) {
+VecX Equilibrium::residual(const VecX& x, const HipContact& contact, const Vec3& force) {
   VecX sum = elastic_.force(x);
-  contact.add_force(x, VecX(), sum);
+  contact.add_force(x, sum);
   if (mode_ == LoadMode::force) sum.segment<3>(3 * system_.translation()) += force;
   for (std::size_t i = 0; i < free_.size(); ++i) {
     if (!free_[i]) sum.segment<3>(3 * static_cast<Eigen::Index>(i)).setZero();
@@ -131,7 +122,7 @@ VecX Equilibrium::residual(const VecX& x, const collide::SurfaceContact& contact
 double Equilibrium::reference_force(const HipState& state, const Vec3& force) const {
   constexpr double kLeast = 1.0;  // N: below this a prescribed pose does not press
   return mode_ == LoadMode::force ? force.norm()
-                                  : std::max(kLeast, contact_force(state.contact, state.x).norm());
+                                  : std::max(kLeast, state.contact.force(state.x).norm());
 }
 
 SolveReport Equilibrium::relax(HipState& state, const Vec3& force, double tolerance,
@@ -167,13 +158,15 @@ SolveReport Equilibrium::relax(HipState& state, const Vec3& force, double tolera
 std::string Equilibrium::touch(HipState& state, const Vec3& direction) const {
   const auto t = 3 * system_.translation();
   double way = kInfinity;
-  for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
+  bool touching = false;
+  state.contact.for_each_constraint([&](const auto& contact, const auto& constraint) {
     const double closing =
-        -translation_slope(state.contact, constraint, system_.translation()).dot(direction);
-    const double gap = state.contact.gap(constraint, state.x);
-    if (gap <= 0.0) return "";
+        -translation_slope(contact, constraint, system_.translation()).dot(direction);
+    const double gap = contact.gap(constraint, state.x);
+    touching = touching || gap <= 0.0;
     if (closing > 0.1) way = std::min(way, gap / closing);
-  }
+  });
+  if (touching) return "";
   if (way == kInfinity) {
     return "the articular surfaces do not face each other along the joint force: nothing to press "
            "against";
@@ -194,13 +187,13 @@ std::string Equilibrium::seat(HipState& state, const Vec3& force) const {
     // translation alone against the springs that the pairs make
     Vec3 pull = force;
     Mat3 stiffness = Mat3::Zero();
-    for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
-      const double p = state.contact.pressure(constraint, state.x);
-      if (p == 0.0) continue;
-      const Vec3 slope = translation_slope(state.contact, constraint, system_.translation());
+    state.contact.for_each_constraint([&](const auto& contact, const auto& constraint) {
+      const double p = contact.pressure(constraint, state.x);
+      if (p == 0.0) return;
+      const Vec3 slope = translation_slope(contact, constraint, system_.translation());
       pull += p * constraint.area * slope;
-      stiffness += state.contact.stiffness() * constraint.area * slope * slope.transpose();
-    }
+      stiffness += contact.stiffness() * constraint.area * slope * slope.transpose();
+    });
     if (stiffness.trace() == 0.0) {
       const Vec3 before = state.x.segment<3>(t);
       reason = touch(state, force.normalized());
@@ -243,9 +236,7 @@ Settling Equilibrium::judge(const HipState& state, const Vec3& force, const Limi
   const VecX left = residual(state, force);
   settling.residual = left.norm() / reference;
   settling.imbalance = net_force(left) / reference;
-  for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
-    settling.penetration = std::max(settling.penetration, -state.contact.gap(constraint, state.x));
-  }
+  settling.penetration = state.contact.penetration(state.x);
   settling.converged = settling.residual <= limits.residual &&
                        settling.imbalance <= limits.imbalance &&
                        settling.penetration <= limits.penetration;

@@ -14,7 +14,7 @@ namespace coxa::joint {
 struct HipState {
   VecX x;
   BonePose pose;
-  collide::SurfaceContact contact;
+  HipContact contact;
 };
 
 /// Elastic forces and energy at the positions last asked for: a round of settling asks several
@@ -74,7 +74,7 @@ class Equilibrium {
     double residual, imbalance, penetration;
   };
   Settling judge(const HipState& state, const Vec3& force, const Limits& limits);
-  VecX residual(const VecX& x, const collide::SurfaceContact& contact, const Vec3& force);
+  VecX residual(const VecX& x, const HipContact& contact, const Vec3& force);
   double net_force(const VecX& residual) const;
   SolveReport relax(HipState& state, const Vec3& force, double tolerance, double reference);
   std::string touch(HipState& state, const Vec3& direction) const;
@@ -87,8 +87,5 @@ class Equilibrium {
   HipTangent tangent_;
   int tangent_age_ = 0;  ///< linear solves since the elastic tangent was taken
 };
-
-/// Sum of pressure times area times normal over the pairs: force of the femur on the socket, N.
-Vec3 contact_force(const collide::SurfaceContact& contact, const VecX& x);
 
 }  // namespace coxa::joint

@@ -14,8 +14,7 @@ namespace {
 constexpr double kPatchArea = 5.0;  // mm²
 
 void fill_contact(FrameResult& frame, const std::vector<collide::ContactSample>& samples,
-                  const std::vector<collide::ContactSample>& touching, const Vec3& force,
-                  const ClockFace& clock) {
+                  const std::vector<collide::ContactSample>& touching, const ClockFace& clock) {
   ContactFigures& contact = frame.contact;
   double total_area = 0.0, total_force = 0.0;
   Vec3 weighted = Vec3::Zero();
@@ -36,7 +35,6 @@ void fill_contact(FrameResult& frame, const std::vector<collide::ContactSample>&
     contact.centre_of_pressure = weighted / total_force;
     contact.centre_hour = clock.hour(contact.centre_of_pressure);
   }
-  frame.balance.contact_force = force;
 }
 
 /// Pressures and gaps of the socket's nodes: means of the samples around them, weighted by their
@@ -69,16 +67,16 @@ void fill_head_nodes(FrameResult& frame, const JointModel& model, const HipSyste
                      const HipState& state) {
   const Index n = system.n_femoral();
   VecX force = VecX::Zero(n), area = VecX::Zero(n);
-  for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
-    const double push = state.contact.pressure(constraint, state.x) * constraint.area;
-    if (push == 0.0) continue;
+  state.contact.for_each_constraint([&](const auto& contact, const auto& constraint) {
+    const double push = contact.pressure(constraint, state.x) * constraint.area;
+    if (push == 0.0) return;
     for (Index k = constraint.first; k < constraint.last; ++k) {
-      const Index particle = state.contact.stencil_particles()[static_cast<std::size_t>(k)];
+      const Index particle = contact.stencil_particles()[static_cast<std::size_t>(k)];
       if (particle < system.n_acetabular() || particle == system.translation()) continue;
       force[particle - system.n_acetabular()] +=
-          push * state.contact.stencil_vectors()[static_cast<std::size_t>(k)].norm();
+          push * contact.stencil_vectors()[static_cast<std::size_t>(k)].norm();
     }
-  }
+  });
   TriMesh articular{Points(n, 3), facets_with(model.femoral_cartilage, FacetTag::articular_side)};
   for (Index i = 0; i < n; ++i) {
     articular.points.row(i) = state.x.segment<3>(3 * (system.n_acetabular() + i)).transpose();
@@ -159,6 +157,19 @@ void fill_sectors(std::array<SectorFigures, N>& sectors, const JointModel& model
   }
 }
 
+/// Looks for the element of a cartilage that has lost most of its volume.
+void find_crushed(CrushFigures& crush, const TetMesh& mesh, const fem::ElasticForce& elasticity,
+                  const VecX& x, bool femoral) {
+  VecX ratio(elasticity.n_elements());
+  parallel_for(elasticity.n_elements(),
+               [&](Index e) { ratio[e] = elasticity.deformation_gradient(x, e).determinant(); });
+  Eigen::Index worst = 0;
+  const double least = ratio.minCoeff(&worst);
+  if (!(least < crush.least_volume_ratio)) return;
+  const Points corners = mesh.points(mesh.tets.row(worst), Eigen::all);
+  crush = {least, corners.colwise().mean().transpose(), femoral};
+}
+
 }  // namespace
 
 Reactions bone_reactions(const HipSystem& system, const VecX& force) {
@@ -170,11 +181,11 @@ Reactions bone_reactions(const HipSystem& system, const VecX& force) {
 
 void update_figures(FrameResult& frame, const JointModel& model, const HipSystem& system,
                     Equilibrium& equilibrium, const HipState& state, const ClockFace& clock) {
-  const std::vector<collide::ContactSample> samples = state.contact.samples(state.x);
-  const Vec3 force = contact_force(state.contact, state.x);
+  const collide::SurfaceContact& cartilages = state.contact.cartilages();
+  const std::vector<collide::ContactSample> samples = cartilages.samples(state.x);
   fill_displacements(frame, model, system, state);
-  fill_contact(frame, samples, samples_in_contact(system, state), force, clock);
-  fill_socket_nodes(frame, state.contact, samples, system.n_acetabular());
+  fill_contact(frame, samples, samples_in_contact(system, state), clock);
+  fill_socket_nodes(frame, cartilages, samples, system.n_acetabular());
   fill_head_nodes(frame, model, system, state);
 
   BalanceFigures& balance = frame.balance;
@@ -182,18 +193,24 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
   balance.socket_reaction = reactions.socket;
   balance.femur_reaction = reactions.femur;
   balance.elastic_energy = equilibrium.elastic_energy(state);
-  for (const collide::ContactConstraint& constraint : state.contact.constraints()) {
-    const double gap = std::min(0.0, state.contact.gap(constraint, state.x));
-    frame.contact.penetration = std::max(frame.contact.penetration, -gap);
-    balance.contact_energy +=
-        0.5 * state.contact.stiffness(constraint) * constraint.area * gap * gap;
-  }
-  if (force.norm() > 0.0) {
-    balance.reaction_error = (reactions.socket + reactions.femur).norm() / force.norm();
+  balance.contact_force = state.contact.force(state.x);
+  balance.force_on_bone = state.contact.force_on_bone(state.x);
+  frame.contact.penetration = state.contact.penetration(state.x);
+  state.contact.for_each_constraint([&](const auto& contact, const auto& constraint) {
+    const double gap = std::min(0.0, contact.gap(constraint, state.x));
+    balance.contact_energy += 0.5 * contact.stiffness(constraint) * constraint.area * gap * gap;
+  });
+  if (const double size = balance.contact_force.norm(); size > 0.0) {
+    const Vec3 left = reactions.socket + balance.force_on_bone + reactions.femur;
+    balance.reaction_error = left.norm() / size;
   }
   if (balance.applied_force.allFinite()) {
-    balance.force_error = (force - balance.applied_force).norm() / balance.applied_force.norm();
+    balance.force_error =
+        (balance.contact_force - balance.applied_force).norm() / balance.applied_force.norm();
   }
+
+  find_crushed(frame.crush, model.acetabular_cartilage, system.socket_elasticity(), state.x, false);
+  find_crushed(frame.crush, model.femoral_cartilage, system.femur_elasticity(), state.x, true);
 
   const ElementStrains strains = element_strains(system.socket_elasticity(), state.x);
   fill_sectors(frame.sectors, model, strains, samples,

@@ -34,6 +34,33 @@ double mean_thickness(const TetMesh& mesh) {
   return volume / area({mesh.points, facets_with(mesh, FacetTag::articular_side)});
 }
 
+/// The femoral articular side as particles: every vertex also follows the translation.
+collide::ParticleSurface carried(const Triangles& femoral, Index first, Index translation) {
+  const auto head = collide::make_particle_surface((femoral.array() + first).matrix());
+  collide::ParticleSurface surface;
+  surface.triangles = head.triangles;
+  surface.row_start = {0};
+  for (const Index particle : head.particle) {
+    surface.particle.insert(surface.particle.end(), {particle, translation});
+    surface.weight.insert(surface.weight.end(), {1.0, 1.0});
+    surface.row_start.push_back(static_cast<Index>(surface.particle.size()));
+  }
+  return surface;
+}
+
+/// The triangles with a corner in a ball.
+TriMesh part_within(const TriMesh& mesh, const Vec3& centre, double radius) {
+  std::vector<Index> kept;
+  for (Index t = 0; t < mesh.n_triangles(); ++t) {
+    const auto near = [&](Index v) {
+      return (mesh.points.row(v).transpose() - centre).norm() <= radius;
+    };
+    const auto corners = mesh.triangles.row(t);
+    if (std::any_of(corners.begin(), corners.end(), near)) kept.push_back(t);
+  }
+  return {mesh.points, mesh.triangles(kept, Eigen::all)};
+}
+
 }  // namespace
 
 BonePose between(const BonePose& a, const BonePose& b, double s) {
@@ -81,26 +108,20 @@ void HipSystem::update_pose(VecX& x, const BonePose& from, const BonePose& to) c
   }
 }
 
-collide::SurfaceContact HipSystem::make_contact(double stiffness) const {
+HipContact HipSystem::make_contact(double stiffness, double reach) const {
+  return {make_cartilage_contact(stiffness), make_bone_contact(stiffness, reach)};
+}
+
+collide::SurfaceContact HipSystem::make_cartilage_contact(double stiffness) const {
   const Triangles socket = facets_with(model_.acetabular_cartilage, FacetTag::articular_side);
   const Triangles femoral = facets_with(model_.femoral_cartilage, FacetTag::articular_side);
-  collide::ParticleSurface head =
-      collide::make_particle_surface((femoral.array() + n_acetabular_).matrix());
-  // every femoral vertex also follows the translation
-  collide::ParticleSurface carried;
-  carried.triangles = head.triangles;
-  carried.row_start = {0};
-  for (const Index particle : head.particle) {
-    carried.particle.insert(carried.particle.end(), {particle, translation()});
-    carried.weight.insert(carried.weight.end(), {1.0, 1.0});
-    carried.row_start.push_back(static_cast<Index>(carried.particle.size()));
-  }
   // sample the socket more densely where its facets are the larger ones
   const double socket_edge = mean_edge_length({model_.acetabular_cartilage.points, socket});
   const double head_edge = mean_edge_length({model_.femoral_cartilage.points, femoral});
   const auto quadrature = socket_edge > head_edge ? collide::ContactQuadrature::six_points
                                                   : collide::ContactQuadrature::three_points;
-  collide::SurfaceContact contact(collide::make_particle_surface(socket), carried,
+  collide::SurfaceContact contact(collide::make_particle_surface(socket),
+                                  carried(femoral, n_acetabular_, translation()),
                                   {.stiffness = stiffness,
                                    .search_distance = kSearchDistance,
                                    .facing = kFacing,
@@ -109,6 +130,24 @@ collide::SurfaceContact HipSystem::make_contact(double stiffness) const {
                                    .rule = collide::ContactRule::nodal});
   contact.update_curvature(reference());
   return contact;
+}
+
+std::optional<collide::SurfaceContact> HipSystem::make_bone_contact(double stiffness,
+                                                                    double reach) const {
+  const Triangles femoral = facets_with(model_.femoral_cartilage, FacetTag::articular_side);
+  double radius = 0.0;
+  for (const Index node : nodes_of(femoral, 0)) {
+    const Vec3 arm = model_.femoral_cartilage.points.row(node).transpose() - centre_;
+    radius = std::max(radius, arm.norm());
+  }
+  TriMesh bone = part_within(model_.hip_bone, centre_, radius + kSearchDistance + reach);
+  if (bone.empty()) return std::nullopt;
+  return collide::SurfaceContact(carried(femoral, n_acetabular_, translation()), std::move(bone),
+                                 {.stiffness = stiffness,
+                                  .search_distance = kSearchDistance,
+                                  .facing = kFacing,
+                                  .normal = collide::ContactNormal::smooth,
+                                  .rule = collide::ContactRule::nodal});
 }
 
 std::vector<const dynamics::Force*> HipSystem::elastic() const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <coxa/collide/surface_contact.h>
 #include <coxa/dynamics/particles.h>
 #include <coxa/joint/joint_model.h>
 #include <coxa/joint/load_case.h>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "elasticity.h"
+#include "hip_contact.h"
 
 namespace coxa::joint {
 
@@ -41,11 +41,13 @@ class HipSystem {
   /// Carries the femur from one pose to another, with its deformation; t stays.
   void update_pose(VecX& x, const BonePose& from, const BonePose& to) const;
 
-  collide::SurfaceContact make_contact(double stiffness) const;
+  /// @param reach  how far the head may move, mm: bone farther than that is left out
+  HipContact make_contact(double stiffness, double reach) const;
   std::vector<const dynamics::Force*> elastic() const;
   /// Elastic force of both cartilages at x on all particles, N; sets their energy, N·mm.
   VecX elastic_force(const VecX& x, double& energy) const;
   const fem::ElasticForce& socket_elasticity() const { return socket_elasticity_.by_element(); }
+  const fem::ElasticForce& femur_elasticity() const { return femur_elasticity_.by_element(); }
   /// Particles that may move; t only when it is free.
   std::vector<bool> free_particles(LoadMode mode) const;
   /// Held nodes of the acetabular and of the femoral bone side.
@@ -57,6 +59,9 @@ class HipSystem {
   double foundation_stiffness() const { return foundation_stiffness_; }
 
  private:
+  collide::SurfaceContact make_cartilage_contact(double stiffness) const;
+  std::optional<collide::SurfaceContact> make_bone_contact(double stiffness, double reach) const;
+
   const JointModel& model_;
   Index n_acetabular_, n_femoral_;
   Vec3 centre_;

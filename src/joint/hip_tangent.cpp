@@ -50,12 +50,12 @@ void HipTangent::update_elastic(const std::vector<const dynamics::Force*>& elast
   });
 }
 
-void HipTangent::update_contact(const collide::SurfaceContact& contact, const VecX& x) {
+void HipTangent::update_contact(const HipContact& hip, const VecX& x) {
   rows_.clear();
   row_particle_.clear();
   row_slope_.clear();
-  for (const collide::ContactConstraint& constraint : contact.constraints()) {
-    if (contact.pressure(constraint, x) == 0.0) continue;
+  hip.for_each_constraint([&](const auto& contact, const auto& constraint) {
+    if (contact.pressure(constraint, x) == 0.0) return;
     ContactRow row{contact.stiffness(constraint) * constraint.area,
                    static_cast<Index>(row_particle_.size()), 0};
     for (Index k = constraint.first; k < constraint.last; ++k) {
@@ -67,7 +67,7 @@ void HipTangent::update_contact(const collide::SurfaceContact& contact, const Ve
     }
     row.last = static_cast<Index>(row_particle_.size());
     rows_.push_back(row);
-  }
+  });
   row_force_.assign(rows_.size(), 0.0);
   index_rows_by_particle();
   update_preconditioner();

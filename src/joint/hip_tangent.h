@@ -1,11 +1,12 @@
 #pragma once
 
-#include <coxa/collide/surface_contact.h>
 #include <coxa/core/solve_report.h>
 #include <coxa/dynamics/particles.h>
 #include <coxa/solve/block_matrix.h>
 
 #include <vector>
+
+#include "hip_contact.h"
 
 namespace coxa::joint {
 
@@ -23,7 +24,7 @@ class HipTangent {
   void update_elastic(const std::vector<const dynamics::Force*>& elastic, const VecX& x);
   /// Takes the constraints that press at x; to be called after update_elastic and whenever contact
   /// changed.
-  void update_contact(const collide::SurfaceContact& contact, const VecX& x);
+  void update_contact(const HipContact& contact, const VecX& x);
 
   /// Solves tangent · step = residual (3n values; both zero at held particles) by conjugate
   /// gradients. Stops early, with what is reached, where the tangent is not positive definite.

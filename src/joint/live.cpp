@@ -43,7 +43,9 @@ struct LiveHip::Impl {
         rough_equilibrium(system, mode, rough),
         exact_equilibrium(system, mode, exact),
         clock(socket_clock(hip)),
-        state{system.reference(), {}, system.make_contact(exact.contact_stiffness)} {}
+        state{system.reference(),
+              {},
+              system.make_contact(exact.contact_stiffness, exact.max_translation)} {}
 
   Vec3 found() const { return state.x.segment<3>(3 * system.translation()); }
   RigidTransform placed(const BonePose& pose) const {

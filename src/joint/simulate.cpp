@@ -47,6 +47,22 @@ void check(const motion::HipMotion& motion, const LoadCase& load, const JointOpt
   if (options.centre_shift) positive(*options.centre_shift, "centre_shift");
 }
 
+/// A frame whose equilibrium turns an element inside out is none of the tissue.
+FrameResult without_result(const FrameResult& frame) {
+  FrameResult failed;
+  failed.frame = frame.frame;
+  failed.status = FrameStatus::failed;
+  failed.reason = join_text("an element of the ", frame.crush.femoral ? "femoral" : "acetabular",
+                            " cartilage near ", frame.crush.place.transpose(),
+                            " is turned inside out: volume ratio ", frame.crush.least_volume_ratio);
+  failed.angles = frame.angles;
+  failed.X_II = frame.X_II;
+  failed.bone_clearance = frame.bone_clearance;
+  failed.residual = frame.residual;
+  failed.iterations = frame.iterations;
+  return failed;
+}
+
 /// One simulation: what lasts from frame to frame.
 class Simulation {
  public:
@@ -60,7 +76,9 @@ class Simulation {
         system_(model),
         march_(system_, load.mode, options),
         limit_(model),
-        state_{system_.reference(), {}, system_.make_contact(options.contact_stiffness)} {}
+        state_{system_.reference(),
+               {},
+               system_.make_contact(options.contact_stiffness, options.max_translation)} {}
 
   JointResult run();
 
@@ -141,6 +159,7 @@ void Simulation::run_frame(FrameResult& frame) {
       frame.balance.applied_force = force(frame.frame);
       frame.balance.work = march_.work();
       update_figures(frame, model_, system_, march_.equilibrium(), state_, result_.clock);
+      if (frame.crush.least_volume_ratio <= 0.0) frame = without_result(frame);
     }
   }
   previous_ = target;

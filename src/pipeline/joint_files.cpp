@@ -69,9 +69,10 @@ std::string header() {
       "pressure_5mm2_MPa,"
       "mean_pressure_MPa,contact_area_mm2,contact_area_percent,centre_of_pressure_x_mm,centre_of_"
       "pressure_y_mm,"
-      "centre_of_pressure_z_mm,centre_of_pressure_hour,penetration_mm,contact_force_N,force_error_"
+      "centre_of_pressure_z_mm,centre_of_pressure_hour,penetration_mm,contact_force_N,force_on_"
+      "bare_bone_N,force_error_"
       "percent,"
-      "reaction_error,elastic_energy_Nmm";
+      "reaction_error,elastic_energy_Nmm,least_volume_ratio";
   for (int h = 0; h < 12; ++h) text += join_text(",strain_", h == 0 ? 12 : h, "_oclock");
   for (const char* region : joint::kRegionNames) text += join_text(",strain_", region);
   return text + ",residual,iterations,seconds,reason\n";
@@ -84,8 +85,9 @@ std::string contact_cells(const joint::FrameResult& f) {
                      cell(100.0 * c.contact_share);
   for (int i = 0; i < 3; ++i) text += cell(c.centre_of_pressure[i]);
   text += cell(c.centre_hour) + cell(c.penetration) + cell(f.balance.contact_force.norm()) +
-          cell(100.0 * f.balance.force_error) + cell(f.balance.reaction_error) +
-          cell(f.balance.elastic_energy);
+          cell(f.balance.force_on_bone.norm()) + cell(100.0 * f.balance.force_error) +
+          cell(f.balance.reaction_error) + cell(f.balance.elastic_energy) +
+          cell(f.crush.least_volume_ratio);
   for (const joint::SectorFigures& sector : f.sectors) text += cell(sector.strain);
   for (const joint::SectorFigures& region : f.regions) text += cell(region.strain);
   return text + cell(f.residual) + cell(f.iterations) + cell(f.seconds);
@@ -93,7 +95,7 @@ std::string contact_cells(const joint::FrameResult& f) {
 
 /// Cells of a frame without a result: as many commas as `contact_cells` has.
 std::string no_contact_cells() {
-  return std::string(15 + 12 + joint::kRegionNames.size() + 3, ',');
+  return std::string(17 + 12 + joint::kRegionNames.size() + 3, ',');
 }
 
 std::string quoted(std::string text) {

@@ -17,6 +17,8 @@ namespace {
 // cartilage by a third, mm
 constexpr double kCentreShift = 0.1;
 constexpr double kTonnePerKilogram = 1e-3;
+// less of its volume than this is left to tissue only where a thin edge is crushed
+constexpr double kCrushed = 0.25;
 
 const char* name_of(Loading loading) {
   return loading == Loading::joint_force   ? "joint_force"
@@ -89,6 +91,13 @@ void add_figures(const joint::JointResult& result, Record& record) {
           join_text("frame ", frame.frame, " did not converge: ", frame.reason));
     }
     if (frame.status != joint::FrameStatus::converged) continue;
+    if (frame.crush.least_volume_ratio < kCrushed) {
+      record.warnings.push_back(join_text(
+          "frame ", frame.frame, ": ", frame.crush.femoral ? "femoral" : "acetabular",
+          " cartilage near ", frame.crush.place.transpose(), " is squeezed to ",
+          100.0 * frame.crush.least_volume_ratio,
+          " % of its volume: an edge bears the load there, and peak pressures tell of that edge"));
+    }
     peak = std::max(peak, frame.contact.peak_pressure_p99);
     force_error = std::max(force_error, frame.balance.force_error);
     reaction_error = std::max(reaction_error, frame.balance.reaction_error);

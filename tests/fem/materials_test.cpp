@@ -35,6 +35,12 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Law{"StVenantKirchhoff", [] { return make_st_venant_kirchhoff(kCartilage); }, kCartilage},
         Law{"Corotational", [] { return make_corotational(kCartilage); }, kCartilage},
+        // so that about half of the suite's deformations are compacted
+        Law{"Compacting",
+            [] {
+              return make_compacting(make_corotational(kCartilage), {0.95, 200.0});
+            },
+            kCartilage},
         Law{"NeoHookean", [] { return make_neo_hookean(kCartilage); }, kCartilage},
         Law{"StableNeoHookean", [] { return make_stable_neo_hookean(kCartilage); }, kCartilage},
         Law{"VerondaWestmann", [] { return make_veronda_westmann(0.8, 5.0, 30.0); },
@@ -211,6 +217,19 @@ TEST(Corotational, PushesBackFromInversion) {
     EXPECT_LT(law->first_piola(F)(2, 2), -20.0) << l;
     EXPECT_LE((law->first_piola(F) - numeric_piola(*law, F)).norm(), 1e-5) << l;
   }
+}
+TEST(Compacting, LeavesTheLawAloneAboveItsVolumeRatioAndLocksBelow) {
+  const auto law = make_corotational(kCartilage);
+  const auto locking = make_compacting(make_corotational(kCartilage), {0.3, 900.0});
+  const Mat3 above = Vec3(1.0, 1.1, 0.3).asDiagonal(), below = Vec3(1.0, 1.0, 0.1).asDiagonal();
+  EXPECT_EQ(locking->first_piola(above), law->first_piola(above));
+  EXPECT_EQ(locking->energy_density(above), law->energy_density(above));
+  // confined to a tenth: the pressure is 900 MPa times the 0.2 of volume that are missing
+  EXPECT_NEAR(locking->first_piola(below)(2, 2), law->first_piola(below)(2, 2) - 180.0, 1e-10);
+}
+TEST(Compacting, RefusesWhatCannotBe) {
+  for (const Compaction& bad : {Compaction{0.0, 1.0}, Compaction{1.0, 1.0}, Compaction{0.5, 0.0}})
+    EXPECT_THROW(make_compacting(make_corotational(kCartilage), bad), Error);
 }
 TEST(StableNeoHookean, IsFiniteAndSmoothThroughInversion) {
   const auto law = make_stable_neo_hookean(kCartilage);

@@ -64,4 +64,14 @@ std::unique_ptr<Material> make_stable_neo_hookean(const Lame& lame);
 /// @param c1 MPa   @param c2 no unit   @param bulk MPa, all > 0
 std::unique_ptr<Material> make_veronda_westmann(double c1, double c2, double bulk);
 
+/// How a porous solid locks once its fluid is out.
+struct Compaction {
+  double volume_ratio = 0.0;  ///< in (0, 1): J below which it resists
+  double bulk = 0.0;          ///< MPa, > 0: pressure for a further change of J by one
+};
+/// A law with bulk/2 (J0 - J)^2 added below J0: elements that an edge squeezes flat lock instead of
+/// turning inside out.
+std::unique_ptr<Material> make_compacting(std::unique_ptr<Material> law,
+                                          const Compaction& compaction);
+
 }  // namespace coxa::fem

@@ -51,15 +51,24 @@ struct ContactFigures {
   double deepest_sample = 0.0;  ///< mm, largest overlap at a single sampling point
 };
 
+/// How near one converged frame comes to crushing an element.
+struct CrushFigures {
+  double least_volume_ratio = 1.0;    ///< deformed over reference volume of the worst element
+  Vec3 place = Vec3::Constant(kNaN);  ///< mm, image frame, its middle before deformation
+  bool femoral = false;               ///< whether it belongs to the femoral cartilage
+};
+
 /// Balance of one converged frame.
 struct BalanceFigures {
   Vec3 applied_force =
       Vec3::Zero();  ///< N, femur onto socket, image axes; NaN with a prescribed pose
-  Vec3 contact_force = Vec3::Zero();    ///< N, integral of pressure times normal
+  Vec3 contact_force = Vec3::Zero();  ///< N, femur onto socket: integral of pressure times normal,
+                                      ///< bare bone included
+  Vec3 force_on_bone = Vec3::Zero();  ///< N, the part of it on hip bone that no cartilage covers
   Vec3 socket_reaction = Vec3::Zero();  ///< N, of the acetabular bone side onto the hip bone
   Vec3 femur_reaction = Vec3::Zero();   ///< N, of the femoral bone side onto the femur
   double force_error = 0.0;     ///< |contact - applied| / |applied|; 0 with a prescribed pose
-  double reaction_error = 0.0;  ///< |socket + femur reaction| / |contact force|
+  double reaction_error = 0.0;  ///< |socket + bare bone + femur| / |contact force|
   double elastic_energy = 0.0;  ///< N·mm
   double contact_energy = 0.0;  ///< N·mm, left in the penalty
   double work = 0.0;  ///< N·mm, done by the femur's bone side since the first loaded state
@@ -86,6 +95,7 @@ struct FrameResult {
   VecX femoral_pressure;  ///< MPa per node, 0 off the articular side
   ContactFigures contact;
   BalanceFigures balance;
+  CrushFigures crush;
   std::array<SectorFigures, 12> sectors;  ///< sector h is centred on h o'clock, 0 on twelve
   std::array<SectorFigures, 6> regions;   ///< as kRegionNames
   double residual = 0.0;  ///< of the free nodes' forces, relative to the joint force
