@@ -17,6 +17,9 @@ constexpr double kLargestThreshold = 0.75, kThresholdStep = 0.25, kNearlyEqual =
 constexpr double kSharp = 0.6;
 // evidence beyond the threshold that makes a vertex certain
 constexpr double kCertain = 4.0;
+// a layer thins out to its border, and less than about 0.6 mm of it vanishes between the dark
+// cortex and what is dark beyond; only where cartilage is brighter than marrow its glare shows
+constexpr double kHidden = 1.0;
 
 /// The evidence that parts inside from outside best, and the mean of the shares told right.
 struct Threshold {
@@ -72,18 +75,22 @@ std::pair<double, double> update_coverage(Coverage& coverage, const std::vector<
 std::vector<Coverage> coverages_of(std::span<const HostPatch> patches,
                                    std::span<const PreparedImage> images) {
   std::vector<CoverageRay> rays = coverage_rays(patches, images);
-  update_fits(rays, images.size());
+  const std::vector<TissueBrightness> brightness = update_fits(rays, images.size());
   std::vector<Coverage> coverages;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const VecX none = VecX::Zero(patches[p].mesh.n_vertices());
     Coverage coverage{none, none, none, none};
-    double sum = 0.0, total = 0.0;
+    double sum = 0.0, total = 0.0, hidden = 0.0;
     for (std::size_t image = 0; image < images.size(); ++image) {
       const auto [separation, count] = update_coverage(coverage, rays, p, image);
       sum += separation * count;
+      if (brightness[image].cartilage <= brightness[image].marrow) hidden += kHidden * count;
       total += count;
     }
-    if (total > 0.0) coverage.separation = sum / total;
+    if (total > 0.0) {
+      coverage.separation = sum / total;
+      coverage.hidden = hidden / total;
+    }
     coverages.push_back(std::move(coverage));
   }
   return coverages;

@@ -20,6 +20,8 @@ struct Coverage {
   /// In [0, 1]: share of vertices well inside and well outside the present layer that are told
   /// apart, 1/2 when by chance.
   double separation = 0.5;
+  /// mm, width of the margin that is too thin to be seen, on the whole; the score there says bare.
+  double hidden = 0.0;
 };
 
 /// Coverage of each patch by layered profiles along its normals.

@@ -170,7 +170,8 @@ std::vector<CoverageRay> coverage_rays(std::span<const HostPatch> patches,
   return rays;
 }
 
-void update_fits(std::vector<CoverageRay>& rays, std::size_t n_images) {
+std::vector<TissueBrightness> update_fits(std::vector<CoverageRay>& rays, std::size_t n_images) {
+  std::vector<TissueBrightness> all(n_images);
   for (std::size_t image = 0; image < n_images; ++image) {
     auto brightness = first_brightness(rays, image);
     if (!brightness) {
@@ -182,7 +183,9 @@ void update_fits(std::vector<CoverageRay>& rays, std::size_t n_images) {
         likeliest_cartilage(telling_rays(rays, image, *brightness), image, *brightness);
     brightness->cartilage_deviation = kSecondSpread * std::abs(brightness->cartilage);
     update_fits_in(rays, image, *brightness);
+    all[image] = *brightness;
   }
+  return all;
 }
 
 }  // namespace coxa::segment

@@ -26,7 +26,8 @@ std::vector<CoverageRay> coverage_rays(std::span<const HostPatch> patches,
 /// Fits layers to every ray, with brightnesses of the tissues taken from the rays beneath the
 /// present layers, image by image. A ray of an image that shows too few of these loses its image's
 /// opinion: it is taken out.
-void update_fits(std::vector<CoverageRay>& rays, std::size_t n_images);
+/// @returns the brightnesses, by image
+std::vector<TissueBrightness> update_fits(std::vector<CoverageRay>& rays, std::size_t n_images);
 
 /// The value at a share of the sorted values. @param values not empty
 double quantile(std::vector<double> values, double share);

@@ -27,8 +27,10 @@ constexpr double kBareWeight = 0.3;
 constexpr double kOtherBone = 14.0;
 // brightness as of cartilage up to this near to the other bone means that the layers touch, mm
 constexpr double kTouching = 0.8;
-// a layer needs as much room between the other layer and its bone, mm
-constexpr double kLeastRoom = 0.7;
+// a layer needs as much room between the other layer and its bone, mm, give or take
+constexpr double kLeastRoom = 0.7, kRoomSpread = 0.4;
+// so far inside the present rim, mm, cartilage may be found to be the other layer's
+constexpr double kDisputed = 3.0;
 // a layer that has no thickness here yet counts as this thick where two share the room, mm
 constexpr double kLeastShare = 0.5;
 
@@ -61,7 +63,8 @@ std::vector<Measured> measured(const std::vector<ExtentLayer>& layers,
 }
 
 /// Takes the host's vertices, and the patch's, to the border found beneath the layer.
-void update_host(TriMesh& host, Measured& m) {
+/// @returns how far the patch's vertices go, mm outwards
+VecX update_host(TriMesh& host, Measured& m) {
   const VecX weight = m.coverage.known.array().max(kBareWeight);
   const VecX found = (m.coverage.known.array() > 0.0).select(m.coverage.bone, 0.0);
   const VecX move = smoothed_on(m.patch, found, weight, kBonePasses);
@@ -69,6 +72,7 @@ void update_host(TriMesh& host, Measured& m) {
   for (std::size_t v = 0; v < m.patch.host_vertex.size(); ++v)
     host.points.row(m.patch.host_vertex[v]) = m.patch.mesh.points.row(static_cast<Index>(v));
   update_unfolded(host);
+  return move;
 }
 
 /// Present thickness of a layer near a point; 0 where it is not.
@@ -106,18 +110,22 @@ std::vector<Opposite> opposites_of(const std::vector<Measured>& all, std::size_t
   return others;
 }
 
-/// Beside the present layer, cartilage for which the other layer leaves no room is the other's:
-/// the host's border is wrong there.
-void update_claims(Measured& m, const std::vector<Opposite>& others) {
+/// Near the present rim and beside it, cartilage that begins where the other layer does is the
+/// other's: what lies before it is not the host's cortex but a dark wedge on bare bone, or the
+/// host's border is wrong there.
+/// @param moved mm outwards, of the patch's vertices since the rays were cast
+void update_claims(Measured& m, const VecX& moved, const std::vector<Opposite>& others) {
   VecX& score = m.coverage.score;
   parallel_for(static_cast<std::int64_t>(score.size()), [&](Index v) {
-    if (m.patch.rim_distance[v] > 0.0) return;
+    if (m.patch.rim_distance[v] >= kDisputed) return;
     const Vec3 p = m.patch.mesh.points.row(v), normal = m.patch.normals.row(v);
+    const double begins = std::max(m.coverage.bone[v] - moved[v], 0.0);
     for (const Opposite& other : others) {
       const auto hit = other.bone->first_hit(p, normal, kOtherBone);
       if (!hit) continue;
-      const double left = hit->distance - (*other.thickness)(p + hit->distance * normal);
-      if (left < kLeastRoom) score[v] = std::min(score[v], -1.0);
+      const double theirs = hit->distance - (*other.thickness)(p + hit->distance * normal);
+      const double room = (theirs - begins - kLeastRoom) / kRoomSpread;
+      score[v] = std::min(score[v], std::max(room, -1.0));
     }
   });
 }
@@ -149,7 +157,8 @@ VecX own_thickness(const Measured& m, const std::vector<Opposite>& others) {
 
 /// Lays the layer on the rim found with the thickness found.
 void update_layer(TriMesh& layer, const Measured& m, const VecX& thickness) {
-  const TriMesh sheet = sheet_to_rim(m.sheet.sheet, m.patch, m.coverage.score, kReach);
+  const TriMesh sheet = sheet_to_rim(m.sheet.sheet, m.patch, m.coverage.score,
+                                     {.search = kReach, .hidden = m.coverage.hidden});
   const TriangleTree tree(m.patch.mesh.points, m.patch.mesh.triangles);
   for (Index v = 0; v < sheet.n_vertices(); ++v) {
     const Index opposite = m.sheet.opposite[static_cast<std::size_t>(v)];
@@ -170,12 +179,14 @@ std::vector<FoundExtent> update_extents(std::vector<ExtentLayer>& layers,
   std::vector<Measured> all = measured(layers, images);
   std::vector<FoundExtent> found;
   for (const Measured& m : all) found.push_back({m.coverage.separation, false});
+  std::vector<VecX> moved;
   for (std::size_t l = 0; l < layers.size(); ++l) {
-    if (all[l].usable()) update_host(*layers[l].host, all[l]);
+    moved.push_back(all[l].usable() ? update_host(*layers[l].host, all[l])
+                                    : VecX::Zero(all[l].coverage.bone.size()));
   }
   std::vector<std::vector<Opposite>> opposites;
   for (std::size_t l = 0; l < layers.size(); ++l) opposites.push_back(opposites_of(all, l));
-  for (std::size_t l = 0; l < layers.size(); ++l) update_claims(all[l], opposites[l]);
+  for (std::size_t l = 0; l < layers.size(); ++l) update_claims(all[l], moved[l], opposites[l]);
   for (Measured& m : all) {
     VecX& score = m.coverage.score;
     score = smoothed_on(m.patch, score, VecX::Ones(score.size()), kScorePasses);

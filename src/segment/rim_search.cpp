@@ -18,7 +18,7 @@ namespace {
 // places tried across the rim, mm apart
 constexpr double kStep = 0.5, kLongestStep = 1.0;
 // cost of a place d mm away, per mm of rim: kFar d²; against 1 for a millimetre of certain ground
-constexpr double kFar = 0.01;
+constexpr double kFar = 0.045;
 // cost of neighbours l mm apart that go d and e: kUneven (d - e)² / l
 constexpr double kUneven = 0.5;
 // the border's move fades over this length inside the sheet, mm
@@ -133,9 +133,18 @@ Vec3 inner_corner(const TriMesh& sheet, Index a, Index b) {
   return Vec3::Zero();
 }
 
+/// The place `n_further` beyond the one chosen, or as far as the way goes.
+Index further(const Way& way, Index place, Index n_further) {
+  for (Index k = 0; k < n_further && place + 1 < way.cost.size(); ++k) {
+    if (!std::isfinite(way.cost[place + 1])) break;
+    ++place;
+  }
+  return place;
+}
+
 /// New places of one loop's vertices, written into `moved`.
 void update_loop(const TriMesh& sheet, const std::vector<Index>& loop, const Ground& ground,
-                 Index n_each_way, Points& moved) {
+                 const RimReach& reach, Points& moved) {
   const std::size_t n = loop.size();
   std::vector<Vec3> outward(n, Vec3::Zero());
   std::vector<double> length(n);
@@ -155,13 +164,16 @@ void update_loop(const TriMesh& sheet, const std::vector<Index>& loop, const Gro
     for (std::size_t i = 0; i < n; ++i)
       outward[i] = before[(i + n - 1) % n] + before[i] + before[(i + 1) % n];
   }
+  const Index n_each_way = static_cast<Index>(std::lround(reach.search / kStep));
+  const Index n_hidden = static_cast<Index>(std::lround(reach.hidden / kStep));
   std::vector<Way> ways(n);
   parallel_for(static_cast<std::int64_t>(n), [&](Index i) {
     const auto at = static_cast<std::size_t>(i);
     ways[at] = way_across(ground, sheet.points.row(loop[at]), outward[at], n_each_way);
   });
   const std::vector<Index> chosen = best_chain(ways, length);
-  for (std::size_t i = 0; i < n; ++i) moved.row(loop[i]) = ways[i].places.row(chosen[i]);
+  for (std::size_t i = 0; i < n; ++i)
+    moved.row(loop[i]) = ways[i].places.row(further(ways[i], chosen[i], n_hidden));
 }
 
 /// Moves of all vertices from those of the border, fading inwards: (L + 1/fading²) u = 0.
@@ -240,13 +252,12 @@ void update_evened(TriMesh& sheet, const Ground& ground, const std::vector<bool>
 }  // namespace
 
 TriMesh sheet_to_rim(const TriMesh& sheet, const HostPatch& patch, const VecX& score,
-                     double reach) {
+                     const RimReach& reach) {
   const Ground ground(patch, score);
-  const Index n_each_way = static_cast<Index>(std::lround(reach / kStep));
   Points moved = sheet.points;
   std::vector<bool> on_border(static_cast<std::size_t>(sheet.n_vertices()), false);
   for (const std::vector<Index>& loop : boundary_loops(sheet)) {
-    update_loop(sheet, loop, ground, n_each_way, moved);
+    update_loop(sheet, loop, ground, reach, moved);
     for (const Index v : loop) on_border[static_cast<std::size_t>(v)] = true;
   }
   TriMesh result = sheet;

@@ -12,13 +12,16 @@ namespace {
 
 // A ball of bone with a cap of cartilage, mm and radians from the axis +z.
 constexpr double kRadius = 22.0, kCap = radians(70.0), kThickness = 1.8, kCortex = 1.0;
+// The cartilage thins out over so much of its border.
+constexpr double kThinning = 3.0;
 
 double brightness_at(const Vec3& p) {
   const double r = p.norm(), angle = std::acos(std::clamp(p.z() / r, -1.0, 1.0));
   const bool under = angle < kCap;
+  const double thickness = kThickness * std::min(1.0, (kCap - angle) * kRadius / kThinning);
   if (r < kRadius - kCortex) return 190.0;
   if (r < kRadius) return 20.0;
-  if (under) return r < kRadius + kThickness ? 95.0 : r < kRadius + kThickness + 1.5 ? 30.0 : 190.0;
+  if (under) return r < kRadius + thickness ? 95.0 : r < kRadius + thickness + 1.5 ? 30.0 : 190.0;
   return r < kRadius + 1.5 ? 30.0 : 190.0;
 }
 
