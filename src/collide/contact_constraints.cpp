@@ -78,7 +78,7 @@ void SurfaceContact::make_pointwise_constraints() {
     append_constraint({.owner = pair.sample,
                        .normal = pair.normal,
                        .offset = pair.offset + obstacle_height(pair),
-                       .area = samples_[s].area},
+                       .area = pair.share * samples_[s].area},
                       entries);
     paired[s] = true;
   }
@@ -96,7 +96,7 @@ void SurfaceContact::make_nodal_constraints(const std::vector<char>& wanted) {
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
       const ContactSample& sample = samples_[static_cast<std::size_t>(pairs_[p].sample)];
       for (int k = 0; k < 3; ++k) {
-        const double share = sample.barycentric[k] * sample.area;
+        const double share = sample.barycentric[k] * sample.area * pairs_[p].share;
         const auto v = static_cast<std::size_t>(slave_.triangles(sample.triangle, k));
         if (share == 0.0 || (!wanted.empty() && !wanted[v])) continue;
         take(v, p, share);

@@ -12,6 +12,9 @@ namespace {
 
 // a projection that misses the open border by less than this share of an edge still counts as on it
 constexpr double kBorderShare = 1e-3;
+// a line along the smooth normal may pass a triangle by this share of its edges: beyond,
+// interpolated normals mean nothing and the plane runs away from the surface
+constexpr double kFarthestMiss = 0.5;
 // distances below this have no direction of their own, mm
 constexpr double kTouching = 1e-9;
 
@@ -77,15 +80,18 @@ std::optional<Vec3> line_hit(const OtherSurface& other, Index triangle, const Ve
   return Vec3(1.0 - second - third, second, third);
 }
 
-std::optional<FacedPoint> along_smooth_normal(const OtherSurface& other, const Vec3& point,
-                                              const NearestPoint& nearest) {
-  FacedPoint faced{nearest.triangle, nearest.triangle, nearest.barycentric, Vec3::Zero()};
+/// Where the line along the smooth normal arrives; at a crease, where none does, the nearest point.
+FacedPoint along_smooth_normal(const OtherSurface& other, const Vec3& point,
+                               const NearestPoint& nearest) {
+  const FacedPoint at_nearest{nearest.triangle, nearest.triangle, nearest.barycentric,
+                              smooth_normal(other, nearest.triangle, nearest.barycentric), 1.0};
+  FacedPoint faced = at_nearest;
   // fixed point of "the normal where the line along the normal arrives"; contracts as gap over
   // radius
   for (int iteration = 0; iteration < 3; ++iteration) {
     faced.normal = smooth_normal(other, faced.triangle, faced.barycentric);
     const auto hit = line_hit(other, faced.triangle, point, faced.normal);
-    if (!hit) return std::nullopt;
+    if (!hit || hit->minCoeff() < -kFarthestMiss) return at_nearest;
     faced.barycentric = *hit;
   }
   return faced;
@@ -110,11 +116,9 @@ std::optional<FacedPoint> find_faced_point(const OtherSurface& other, const Vec3
   const auto nearest = other.tree.nearest_within(point, search_limit(other, point, hint, options));
   if (!nearest || beyond_border(other, point, *nearest)) return std::nullopt;
 
-  FacedPoint faced{nearest->triangle, nearest->triangle, nearest->barycentric, Vec3::Zero()};
+  FacedPoint faced{nearest->triangle, nearest->triangle, nearest->barycentric, Vec3::Zero(), 1.0};
   if (options.normal == ContactNormal::smooth) {
-    const auto smooth = along_smooth_normal(other, point, *nearest);
-    if (!smooth) return std::nullopt;
-    faced = *smooth;
+    faced = along_smooth_normal(other, point, *nearest);
   } else {
     const Vec3 offset = point - nearest->point;
     const double distance = offset.norm();
@@ -122,7 +126,12 @@ std::optional<FacedPoint> find_faced_point(const OtherSurface& other, const Vec3
                        ? Vec3(other.tree.sign_at(point, *nearest) / distance * offset)
                        : face_normal(other, nearest->triangle);
   }
-  if (options.facing > -1.0 && -normal.dot(faced.normal) < options.facing) return std::nullopt;
+  const double facing = -normal.dot(faced.normal);
+  if (options.facing > -1.0 && facing < options.facing) return std::nullopt;
+  if (facing < options.facing_fully) {
+    faced.share = (facing - options.facing) / (options.facing_fully - options.facing);
+    if (!(faced.share > 0.0)) return std::nullopt;
+  }
   return faced;
 }
 

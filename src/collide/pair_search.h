@@ -20,6 +20,7 @@ struct FacedPoint {
   Index triangle = 0;
   Vec3 barycentric = Vec3::Zero();  ///< may leave [0, 1] slightly with smooth normals
   Vec3 normal = Vec3::Zero();       ///< unit, away from the other surface
+  double share = 1.0;               ///< in (0, 1], by how well the sample faces it
 };
 
 /// What a sample at `point` with outward normal `normal` faces; nullopt when nothing near enough

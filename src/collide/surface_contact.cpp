@@ -46,6 +46,8 @@ void check(const ContactOptions& options) {
           options.search_distance);
   require(options.quadrature != ContactQuadrature::cut || options.rule == ContactRule::nodal,
           "contact quadrature cut has other samples at each search: it needs the nodal rule");
+  require(options.facing_fully < 1.0, "contact facing_fully must be below 1, got ",
+          options.facing_fully);
   require(-1.0 <= options.facing && options.facing < 1.0, "contact facing must be in [-1, 1), got ",
           options.facing);
 }
@@ -208,8 +210,12 @@ void SurfaceContact::update_pairs(const VecX& x, double reach) {
     const double bulges =
         bulge(slave_bulge_, sample.triangle, sample.barycentric) * -normal.dot(faced->normal) +
         bulge(other_bulge_, faced->triangle, faced->barycentric);
-    found[static_cast<std::size_t>(s)] = {s, faced->triangle, faced->barycentric, faced->normal,
-                                          options_.minimum_gap + bulges};
+    found[static_cast<std::size_t>(s)] = {s,
+                                          faced->triangle,
+                                          faced->barycentric,
+                                          faced->normal,
+                                          options_.minimum_gap + bulges,
+                                          faced->share};
   });
 
   pairs_.clear();

@@ -12,8 +12,8 @@ namespace {
 // articular surfaces look for each other this far, mm; deeper overlaps and wider gaps are not
 // paired
 constexpr double kSearchDistance = 4.0;
-// and only where they face each other within about 70 degrees
-constexpr double kFacing = 0.35;
+// and only where they face each other: not at all beyond about 80 degrees, fully within 60
+constexpr double kFacing = 0.2, kFacingFully = 0.5;
 
 std::vector<Index> nodes_of(const Triangles& facets, Index first) {
   std::vector<Index> nodes(facets.data(), facets.data() + facets.size());
@@ -125,6 +125,7 @@ collide::SurfaceContact HipSystem::make_cartilage_contact(double stiffness) cons
                                   {.stiffness = stiffness,
                                    .search_distance = kSearchDistance,
                                    .facing = kFacing,
+                                   .facing_fully = kFacingFully,
                                    .normal = collide::ContactNormal::smooth,
                                    .quadrature = quadrature,
                                    .rule = collide::ContactRule::nodal});
@@ -146,6 +147,7 @@ std::optional<collide::SurfaceContact> HipSystem::make_bone_contact(double stiff
                                  {.stiffness = stiffness,
                                   .search_distance = kSearchDistance,
                                   .facing = kFacing,
+                                  .facing_fully = kFacingFully,
                                   .normal = collide::ContactNormal::smooth,
                                   .rule = collide::ContactRule::nodal});
 }

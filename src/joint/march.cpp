@@ -64,4 +64,21 @@ Settling March::advance(HipState& state, const BonePose& target, const Vec3& for
   }
 }
 
+Settling March::start_anew(HipState& state, const BonePose& target, const Vec3& force,
+                           const Monitor& monitor) {
+  HipState fresh{system_.reference(), target, state.contact};
+  system_.update_pose(fresh.x, {}, target);
+  fresh.x.segment<3>(3 * system_.translation()) = state.x.segment<3>(3 * system_.translation());
+  Settling settling;
+  settling.reason = equilibrium_.seat(fresh, force);
+  if (!settling.reason.empty()) return settling;
+  settling = equilibrium_.settle(fresh, force, Exactness::result, monitor);
+  if (!settling.converged) return settling;
+  const VecX before = equilibrium_.node_forces(state);
+  work_ += work_between(state, fresh, before, equilibrium_.node_forces(fresh));
+  predictor_.forget();
+  state = std::move(fresh);
+  return settling;
+}
+
 }  // namespace coxa::joint

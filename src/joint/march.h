@@ -17,6 +17,11 @@ class March {
   Settling advance(HipState& state, const BonePose& target, const Vec3& force,
                    const Monitor& monitor);
 
+  /// Brings `state` to a pose without the way there: undeformed, seated anew. What equilibrium
+  /// there is without friction does not depend on the way. A failure leaves it as it was.
+  Settling start_anew(HipState& state, const BonePose& target, const Vec3& force,
+                      const Monitor& monitor);
+
   Equilibrium& equilibrium() { return equilibrium_; }
   double work() const { return work_; }  ///< N·mm, of the femur's bone side on the cartilage
 

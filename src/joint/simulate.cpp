@@ -148,7 +148,12 @@ void Simulation::run_frame(FrameResult& frame) {
   } else if (!unseated_.empty()) {
     frame.reason = unseated_;
   } else {
-    const Settling settling = march_.advance(state_, target, force(frame.frame), monitor_);
+    Settling settling = march_.advance(state_, target, force(frame.frame), monitor_);
+    if (!settling.converged && load_.mode == LoadMode::force) {
+      const int spent = settling.iterations;
+      settling = march_.start_anew(state_, target, force(frame.frame), monitor_);
+      settling.iterations += spent;
+    }
     frame.status = settling.converged ? FrameStatus::converged : FrameStatus::failed;
     frame.reason = settling.reason;
     frame.residual = settling.residual;

@@ -140,6 +140,37 @@ TEST(SurfaceContact, PairsOnlySurfacesThatFaceEachOther) {
     EXPECT_EQ(contact.constraints().size(), static_cast<std::size_t>(count));
   }
 }
+TEST(SurfaceContact, TurnsAwayLittleByLittle) {
+  const TriMesh floor = test::plate(0.0, 20.0, 3);
+  double last = kInfinity;
+  for (double facing = 0.95; facing > 0.1; facing -= 0.05) {
+    const double tilt = std::acos(facing);
+    TriMesh plate = test::turned_over(test::plate(0.0, 1.0, 2));
+    plate.points = plate.points * Eigen::AngleAxisd(tilt, Vec3::UnitX()).matrix().transpose();
+    plate.points.col(2).array() -= 1.5;  // wholly below the floor
+    SurfaceContact contact(make_particle_surface(plate.triangles), floor,
+                           {.facing = 0.2, .facing_fully = 0.6});
+    contact.update_pairs(test::stacked(plate));
+    double area = 0.0;
+    for (const ContactConstraint& constraint : contact.constraints()) area += constraint.area;
+    EXPECT_NEAR(area, 4.0 * std::clamp((facing - 0.2) / 0.4, 0.0, 1.0), 1e-9) << facing;
+    EXPECT_LE(area, last + 1e-12);
+    last = area;
+  }
+  EXPECT_EQ(last, 0.0);
+}
+TEST(SurfaceContact, SmoothNormalsNeverLeadFarFromTheSurface) {
+  // a ring of so few facets that its normals turn by a right angle from corner to corner
+  const TriMesh ring = test::torus(5.0, 1.0, 7, 4);
+  const TriMesh cloud = test::icosphere(4, 3.5, Vec3(0.1, 0.2, 0.3));
+  const VecX x = test::stacked(cloud);
+  SurfaceContact contact(make_particle_surface(cloud.triangles), ring,
+                         {.search_distance = 4.0, .normal = ContactNormal::smooth});
+  contact.update_pairs(x);
+  ASSERT_GT(contact.constraints().size(), 1000u);
+  for (const ContactConstraint& constraint : contact.constraints())
+    EXPECT_LE(std::abs(contact.gap(constraint, x)), 6.0);  // 1.5 times the search distance
+}
 TEST(SurfaceContact, DoesNotPairWhatLiesBeyondAnOpenBorder) {
   TriMesh half = test::turned_over(test::plate(-0.02, 5.0, 20));
   half.points.col(0).array() += 5.05;  // half of it past the floor's border at x = 5
@@ -258,6 +289,7 @@ TEST(SurfaceContact, RejectsBadOptionsWithTheirValue) {
   EXPECT_THROW(make({.stiffness = 0.0}), Error);
   EXPECT_THROW(make({.minimum_gap = 4.0}), Error);
   EXPECT_THROW(make({.facing = 1.0}), Error);
+  EXPECT_THROW(make({.facing_fully = 1.0}), Error);
   EXPECT_THROW(SurfaceContact(make_particle_surface(ball.triangles), TriMesh{}), Error);
   try {
     make({.search_distance = -2.0});

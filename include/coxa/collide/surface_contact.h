@@ -39,6 +39,10 @@ struct ContactOptions {
   double minimum_gap = 0.0;      ///< mm: the surfaces are pushed apart below this distance
   double search_distance = 3.0;  ///< mm, > 0: samples farther from the other surface are not paired
   double facing = -1.0;          ///< in [-1, 1): least -n_slave·n_other of a pair; -1 accepts all
+  /// In [facing, 1): pairs that face each other less than this count for a part of their area, down
+  /// to none at `facing`, so that a surface that turns away leaves contact little by little; below
+  /// `facing` there is no such range.
+  double facing_fully = -1.0;
   ContactNormal normal = ContactNormal::nearest;
   ContactQuadrature quadrature = ContactQuadrature::three_points;
   ContactRule rule = ContactRule::pointwise;
@@ -51,6 +55,7 @@ struct ContactPair {
   Vec3 other_barycentric = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  ///< unit, from the other surface towards the slave
   double offset = 0.0;         ///< mm: gap = normal · (sample - point) - offset
+  double share = 1.0;  ///< in (0, 1], of the sample's area, by how well they face each other
 };
 
 /// One thing kept from overlapping, frozen between two calls of update_pairs:
