@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """Segments the simulated MRIs of ../shared/data/phantom with atlases free of the subject, and prints the distances.
 
-usage: evaluate_segmentation.py --coxa build/release/coxa [--shared ../shared] [--work DIR] [--error MM] [--seed N] [--only NAME,…]
+usage: evaluate_segmentation.py --coxa build/release/coxa [--shared ../shared] [--work DIR] [--error MM] [--seed N] [--only NAME,…] [--judge]
 
 Subjects are taken out in groups (GROUPS), one atlas per group; every atlas is free of all libhip hip bones, so that the
 hip-bone column is of a bone whose like the atlas has not seen (all phantoms' hip bones are warps of one bone: a weak test).
 Landmarks come from the truth surfaces by the rules below, with normal noise of --error mm (standard error of the distance).
-Atlases and results are kept in DIR and reused: delete it to start afresh.  Distances by surface_distance.py --image.
+Atlases are kept in DIR and reused: delete it to start afresh; --judge segments nothing and judges the results there.  Distances
+by surface_distance.py --image; of each cartilage also its sides, its thickness and where it is thick its overlap (cartilage_figures.py).
 """
 import argparse
 import json
@@ -17,6 +18,7 @@ import time
 
 import numpy as np
 
+import cartilage_figures
 from libhip import surface_path
 
 GROUPS = [("m2", "m4"), ("m5", "m6", "m8"), ("m1", "m3", "m10", "m11")]
@@ -63,6 +65,49 @@ def run(command):
     return done
 
 
+def atlas_without(group, options):
+    """The atlas free of these subjects and of every libhip hip bone, built where it is not there yet."""
+    atlas = options.work / f"atlas_without_{'_'.join(group)}.coxa-atlas"
+    if not atlas.exists():
+        exclude = [a for s in group for a in ("--exclude", s)]
+        run([options.coxa, "atlas", "build", "--data", options.shared / "data", *exclude,
+             "--exclude-structure", "libhip:hip_bone", "--out", atlas])
+    return atlas
+
+
+def segmented(image, name, options, evaluator):
+    """Segments one phantom into DIR/name.  Returns whether that went well."""
+    subject, side = name.split("_")[:2]
+    atlas = atlas_without(next(g for g in GROUPS if subject in g), options)
+    rng = np.random.default_rng([options.seed, *name.encode()])
+    marks = landmarks_of(options.shared, subject, side, evaluator)
+    table = options.work / f"{name}_landmarks.csv"
+    rows = [f"{k}_{side}," + ",".join(f"{x:.3f}" for x in p + rng.normal(0, options.error / np.sqrt(3), 3)) for k, p in marks.items()]
+    table.write_text("name,x,y,z\n" + "\n".join(rows) + "\n")
+    done = run([options.coxa, "segment", "--image", image, "--side", side, "--landmarks", table, "--atlas", atlas,
+                "--out", options.work / name])
+    return done.returncode == 0
+
+
+def judge(image, name, options, evaluator):
+    """The distances of all structures in one line's cells, and a line on each cartilage."""
+    cells, lines = [], []
+    for structure in STRUCTURES:
+        result = options.work / name / f"{structure}.ply"
+        truth = truth_path(options.shared, *name.split("_")[:2], structure)
+        if not result.exists():
+            cells.append("failed")
+            continue
+        judged = run(["/usr/bin/python3", evaluator.__file__, result, truth, "--image", image, "--json"])
+        d = json.loads(judged.stdout)
+        cells.append(f"{d['assd']:.3f} / {d['hd95']:.2f} / {d['bias']:+.2f}")
+        if structure.endswith("cartilage"):
+            f = cartilage_figures.figures(result, truth, evaluator)
+            lines.append(f"    {structure:22s} bone side {f['bone_side']:.3f}  articular side {f['articular_side']:.3f}"
+                         f"  mean thickness {f['thickness']:+.3f}  Dice where thick {f['dice']:.3f}")
+    return cells, lines
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--coxa", default=ROOT / "build/release/coxa")
@@ -71,46 +116,23 @@ def main():
     parser.add_argument("--error", type=float, default=3.0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="")
+    parser.add_argument("--judge", action="store_true")
     options = parser.parse_args()
-    evaluators = options.shared / "eval"
-    sys.path.insert(0, str(evaluators))
-    import surface_distance as surfaces
+    sys.path.insert(0, str(options.shared / "eval"))
+    import surface_distance as evaluator
 
     options.work.mkdir(parents=True, exist_ok=True)
-    images = sorted((options.shared / "data/phantom").glob("m*.nii.gz"))
     wanted = [w for w in options.only.split(",") if w]
     print(f"{'phantom':22s} " + " ".join(f"{s:>26s}" for s in STRUCTURES) + "   seconds  (assd / hd95 / bias, mm)")
-    for image in images:
+    for image in sorted((options.shared / "data/phantom").glob("m*.nii.gz")):
         name = image.name[: -len(".nii.gz")]
         if wanted and name not in wanted:
             continue
-        subject, side = name.split("_")[:2]
-        group = next(g for g in GROUPS if subject in g)
-        atlas = options.work / f"atlas_without_{'_'.join(group)}.coxa-atlas"
-        if not atlas.exists():
-            exclude = [a for s in group for a in ("--exclude", s)]
-            run([options.coxa, "atlas", "build", "--data", options.shared / "data", *exclude,
-                 "--exclude-structure", "libhip:hip_bone", "--out", atlas])
-        rng = np.random.default_rng([options.seed, *name.encode()])
-        marks = landmarks_of(options.shared, subject, side, surfaces)
-        table = options.work / f"{name}_landmarks.csv"
-        rows = [f"{k}_{side}," + ",".join(f"{x:.3f}" for x in p + rng.normal(0, options.error / np.sqrt(3), 3)) for k, p in marks.items()]
-        table.write_text("name,x,y,z\n" + "\n".join(rows) + "\n")
-        out = options.work / name
         start = time.time()
-        done = run([options.coxa, "segment", "--image", image, "--side", side, "--landmarks", table, "--atlas", atlas, "--out", out])
+        good = options.judge or segmented(image, name, options, evaluator)
         seconds = time.time() - start
-        cells = []
-        for structure in STRUCTURES:
-            result = out / f"{structure}.ply"
-            if done.returncode or not result.exists():
-                cells.append("failed")
-                continue
-            judged = run(["/usr/bin/python3", evaluators / "surface_distance.py", result,
-                          truth_path(options.shared, subject, side, structure), "--image", image, "--json"])
-            d = json.loads(judged.stdout)
-            cells.append(f"{d['assd']:.3f} / {d['hd95']:.2f} / {d['bias']:+.2f}")
-        print(f"{name:22s} " + " ".join(f"{c:>26s}" for c in cells) + f"   {seconds:.0f}", flush=True)
+        cells, lines = judge(image, name, options, evaluator) if good else (["failed"] * len(STRUCTURES), [])
+        print(f"{name:22s} " + " ".join(f"{c:>26s}" for c in cells) + f"   {seconds:.0f}", *lines, sep="\n", flush=True)
 
 
 if __name__ == "__main__":
