@@ -17,6 +17,8 @@ namespace {
 // cartilage by a third, mm
 constexpr double kCentreShift = 0.1;
 constexpr double kTonnePerKilogram = 1e-3;
+// share of the joint force on bare bone that no healthy hip has
+constexpr double kMuchOnBone = 0.1;
 // less of its volume than this is left to tissue only where a thin edge is crushed
 constexpr double kCrushed = 0.25;
 
@@ -84,7 +86,7 @@ void add_figures(const joint::JointResult& result, Record& record) {
   record.figures["frames"] = static_cast<std::int64_t>(result.frames.size());
   record.figures["frames_converged"] = std::int64_t{result.n_converged()};
   record.figures["load"] = result.load_description;
-  double peak = 0.0, force_error = 0.0, reaction_error = 0.0;
+  double peak = 0.0, force_error = 0.0, reaction_error = 0.0, bare = 0.0;
   for (const joint::FrameResult& frame : result.frames) {
     if (frame.status == joint::FrameStatus::failed) {
       record.warnings.push_back(
@@ -99,10 +101,20 @@ void add_figures(const joint::JointResult& result, Record& record) {
           " % of its volume: an edge bears the load there, and peak pressures tell of that edge"));
     }
     peak = std::max(peak, frame.contact.peak_pressure_p99);
+    if (const double all = frame.balance.contact_force.norm(); all > 0.0)
+      bare = std::max(bare, frame.balance.force_on_bone.norm() / all);
     force_error = std::max(force_error, frame.balance.force_error);
     reaction_error = std::max(reaction_error, frame.balance.reaction_error);
   }
   record.figures["largest_peak_pressure_p99_mpa"] = peak;
+  record.figures["largest_share_on_bare_bone_percent"] = 100.0 * bare;
+  if (bare > kMuchOnBone) {
+    record.warnings.push_back(join_text(
+        "up to ", 100.0 * bare,
+        " % of the joint force rests on bone that no acetabular cartilage covers: its rim may have "
+        "been found too short, or the bone beside it too near; pressures on the cartilage are then "
+        "too low"));
+  }
   record.figures["largest_force_error_percent"] = 100.0 * force_error;
   record.figures["largest_reaction_error"] = reaction_error;
   if (result.bony_limit) add_limit(*result.bony_limit, record);
