@@ -149,14 +149,17 @@ std::vector<float> opened(const std::vector<float>& values, const Grid& grid, do
   return distance;
 }
 
-// even triangles of the length asked for or less; at rims too sharp for them those of the grid
-TriMesh even_triangles(const TriMesh& raw, double target_edge) {
+// even triangles of the length asked for or less; where they fold at sharp rims, about as many that
+// follow the shape, or else those of the grid
+TriMesh fewer_triangles(const TriMesh& raw, double target_edge) {
   for (const double share : {1.0, 0.6}) {
     TriMesh even = remesh(raw, {.target_edge = share * target_edge});
-    // long edges fold at sharp rims
     if (update_unfolded(even) && validate(even).valid()) return even;
   }
-  return raw;
+  const double of_triangle = 0.25 * std::sqrt(3.0) * target_edge * target_edge;
+  const auto wanted = static_cast<Index>(2.0 * triangle_areas(raw).sum() / of_triangle);
+  const TriMesh fewer = decimate(raw, {.n_triangles = std::max<Index>(wanted, 4)});
+  return validate(fewer).valid() ? fewer : raw;
 }
 
 // how far the new surface is from the old one, and what of the old one it leaves out
@@ -190,21 +193,24 @@ Rebuilt rebuild(const TriMesh& mesh, const RebuildOptions& options) {
           " mm");
   require(options.smoothing >= 0.0, "rebuild: smoothing must not be negative, got ",
           options.smoothing, " mm");
+  require(options.thickening >= 0.0, "rebuild: thickening must not be negative, got ",
+          options.thickening, " mm");
   require(options.max_move >= 0.0, "rebuild: max_move must not be negative, got ", options.max_move,
           " mm");
   const TriangleTree old_surface(mesh.points, mesh.triangles);  // refuses what cannot be read
   const Grid grid(mesh.points, options.spacing);
-  std::vector<float> values = inner_distance(mesh, grid, options.opening);
+  std::vector<float> values = inner_distance(mesh, grid, options.opening + options.thickening);
   if (options.opening > 0.0) values = opened(values, grid, options.opening);
   for (int axis = 0; axis < 3 && options.smoothing > 0.0; ++axis)
     values = blurred(values, grid, axis, options.smoothing / options.spacing);
+  for (float& value : values) value += static_cast<float>(options.thickening);
   if (std::none_of(values.begin(), values.end(), [](float v) { return v > 0.0f; }))
     fail(ErrorCode::bad_mesh, "the surface encloses nothing that a grid of ", options.spacing,
          " mm could see");
   const auto position = [&](const Vec3& index) { return Vec3(grid.origin + grid.spacing * index); };
   const TriMesh raw = without_crumbs(iso_surface(grid.size, values, 0.0, position));
 
-  Rebuilt result{even_triangles(raw, options.target_edge)};
+  Rebuilt result{fewer_triangles(raw, options.target_edge)};
   update_moves(mesh, old_surface, options.max_move, result);
   return result;
 }

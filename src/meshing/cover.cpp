@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace coxa::meshing {
@@ -87,7 +89,7 @@ class Cover {
     for (const Index v : place.facet) order.emplace_back((grid_.x[at(v)] - place.p).norm(), v);
     std::sort(order.begin(), order.end());
     for (const auto& [distance, v] : order)
-      if (may_go(grid_.kinds[at(v)]) && try_node(v, place.p, worst)) {
+      if (may_go(grid_.kinds[at(v)]) && try_node(v, place, worst)) {
         grid_.kinds[at(v)] = kept(grid_.kinds[at(v)]);
         grid_.reach[at(v)] = 0.0;
         return true;
@@ -106,16 +108,18 @@ class Cover {
     std::sort(order.begin(), order.end());
     for (const auto& [distance, k] : order)
       if (const Index more =
-              try_split(place.facet[k], place.facet[(k + 1) % 3], place.p, worst, room))
+              try_split(place.facet[k], place.facet[(k + 1) % 3], place, worst, room))
         return more;
     return 0;
   }
 
  private:
-  static double rank_for(double missed) { return missed > kMuchTooFar ? kUrgentRank : kRank; }
+  // what is much too far is worth elements nearer to the limits
+  static bool is_urgent(const Place& place) { return place.distance > kMuchTooFar; }
+  static double rank_for(const Place& place) { return is_urgent(place) ? kUrgentRank : kRank; }
 
   // the elements around the edge, each in two with a new node at the target
-  Index try_split(Index a, Index b, const Vec3& target, double worst, std::ptrdiff_t room) {
+  Index try_split(Index a, Index b, const Place& place, double worst, std::ptrdiff_t room) {
     if (!has_edge(grid_, a, b) || !edge_on_boundary(grid_, a, b)) return 0;
     const std::vector<Index> old = ring_around(grid_, a, b).tets;
     if (old.empty() || std::ssize(old) > room) return 0;
@@ -128,14 +132,17 @@ class Cover {
         std::replace(made.back().begin(), made.back().end(), end, v);
       }
     }
-    const double missed = farthest({a, b}, united(near_[at(a)], near_[at(b)]));
-    const double wanted = std::min(rank_for(missed), worst_rank(before));
-    add_node(a, b, target);
+    add_node(a, b, place.p);
+    if (worst_rank(made) < std::min(rank_for(place), worst_rank(before)) ||
+        worst_energy_of(made) > 3.0 * worst) {
+      drop_last_node();
+      return 0;
+    }
+    const double missed = farthest({a, b}, near_[at(v)]);
     for (const Index t : old) grid_.remove(t);
     std::vector<Index> numbers;
     for (const Tet& t : made) numbers.push_back(grid_.add(t));
-    if (worst_rank(made) >= wanted && energy_around(v) <= 3.0 * worst &&
-        farthest({a, b, v}, near_[at(v)]) <= missed)
+    if (farthest({a, b, v}, near_[at(v)]) <= missed)
       return static_cast<Index>(made.size() - before.size());
     for (const Index t : numbers) grid_.remove(t);
     for (const Tet& t : before) grid_.add(t);
@@ -159,38 +166,39 @@ class Cover {
     grid_.around.pop_back();
     near_.pop_back();
   }
+  double worst_energy_of(const std::vector<Tet>& tets) const {
+    double worst = 0.0;
+    for (const Tet& n : tets)
+      worst = std::max(worst, shape_energy(grid_.x[at(n[0])], grid_.x[at(n[1])], grid_.x[at(n[2])],
+                                           grid_.x[at(n[3])]));
+    return worst;
+  }
   double worst_rank(const std::vector<Tet>& tets) const {
     double worst = kInfinity;
     for (const Tet& t : tets) worst = std::min(worst, element_rank(grid_, t));
     return worst;
   }
 
-  bool try_node(Index v, const Vec3& target, double worst) {
+  bool try_node(Index v, const Place& place, double worst) {
     const Vec3 old = grid_.x[at(v)];
-    const double before = farthest_near(v);
-    // what is much too far is worth elements nearer to the limits
-    const bool urgent = before > kMuchTooFar;
-    const double wanted = std::min(rank_for(before), rank_around(v));
-    const double allowed = std::max(urgent ? 3.0 * worst : worst, energy_around(v));
+    const double wanted = std::min(rank_for(place), rank_around(v));
+    const double allowed = std::max(is_urgent(place) ? 3.0 * worst : worst, energy_around(v));
+    std::optional<double> before;  // dear, and rarely needed
     for (const double share : {1.0, 0.75, 0.5}) {
-      grid_.x[at(v)] = old + share * (target - old);
-      if (energy_around(v) <= allowed && rank_around(v) >= wanted &&
-          farthest_near(v) < 0.8 * before)
-        return true;
+      grid_.x[at(v)] = old + share * (place.p - old);
+      if (energy_around(v) > allowed || rank_around(v) < wanted) continue;
+      if (!before) {
+        const Vec3 there = std::exchange(grid_.x[at(v)], old);
+        before = farthest_near(v);
+        grid_.x[at(v)] = there;
+      }
+      if (farthest_near(v) < 0.8 * *before) return true;
     }
     grid_.x[at(v)] = old;
     return false;
   }
 
-  double energy_around(Index v) const {
-    double worst = 0.0;
-    for (const Index t : grid_.around[at(v)]) {
-      const Tet& n = grid_.tets[at(t)];
-      worst = std::max(worst, shape_energy(grid_.x[at(n[0])], grid_.x[at(n[1])], grid_.x[at(n[2])],
-                                           grid_.x[at(n[3])]));
-    }
-    return worst;
-  }
+  double energy_around(Index v) const { return worst_energy(grid_, v); }
 
   double rank_around(Index v) const {
     double worst = kInfinity;

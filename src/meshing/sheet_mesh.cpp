@@ -13,6 +13,7 @@
 
 #include <coxa/core/error.h>
 #include <coxa/medial/medial_sheet.h>
+#include <coxa/mesh/measures.h>
 
 #include <algorithm>
 
@@ -20,6 +21,7 @@ namespace coxa::meshing {
 namespace {
 
 constexpr int kSizeTries = 8;
+constexpr double kLeastFilled = 0.5;  // share of the volume: the rest is another body
 
 void improve(TetGrid& grid, const SheetGuide& guide, int rounds, const Monitor& monitor) {
   constexpr int kSnapRound = 2;   // bends of the surface are met once nodes are spread evenly
@@ -142,6 +144,8 @@ MeshingResult mesh_sheet(const TriMesh& surface, const medial::SurfaceSides& sid
   result.report.envelope = envelope_error(made.grid, surface);
   result.mesh = to_tet_mesh(made.grid);
   result.report.quality = tet_quality(result.mesh.points, result.mesh.tets);
+  if (const double share = result.report.quality.volume / volume(surface); share < kLeastFilled)
+    fail(ErrorCode::below_quality, "the medial grid fills only ", 100.0 * share, " % of the body");
   return result;
 }
 

@@ -25,6 +25,10 @@ namespace {
 // grid and edge length of a surface made anew, mm: a fraction of cartilage's thickness
 constexpr double kRebuildSpacing = 0.3, kRebuildEdge = 0.7;
 
+// where more than this of a surface would be left out, mm, it is moved outwards by half the
+// thickness that a grid can see, so that its thin parts stay
+constexpr double kLargestLoss = 0.3, kThickening = 0.2;
+
 // a surface that must move farther than this, mm, about as thick as cartilage, is not evened out
 // but another surface
 constexpr double kLargestEvening = 2.0;
@@ -52,10 +56,15 @@ TriMesh made_valid(TriMesh surface, const ValidityReport& before, const std::str
     refusal = refused.what();
   }
   try {
-    const Rebuilt rebuilt =
-        rebuild(surface, {.spacing = kRebuildSpacing, .target_edge = kRebuildEdge});
+    Rebuilt rebuilt = rebuild(surface, {.spacing = kRebuildSpacing, .target_edge = kRebuildEdge});
+    const bool thickened = rebuilt.largest_loss > kLargestLoss;
+    if (thickened)
+      rebuilt = rebuild(
+          surface,
+          {.spacing = kRebuildSpacing, .thickening = kThickening, .target_edge = kRebuildEdge});
     changes.push_back(join_text(
-        "made anew around what it encloses, since ", refusal, "; at most ", rebuilt.largest_move,
+        "made anew around what it encloses", thickened ? ", thicker so that thin parts stay," : "",
+        " since ", refusal, "; at most ", rebuilt.largest_move,
         " mm from where it was; what is left out reached ", rebuilt.largest_loss, " mm farther"));
     return rebuilt.mesh;
   } catch (const Error& error) {
@@ -123,15 +132,20 @@ std::optional<meshing::MeshingResult> filled_otherwise(const TriMesh& surface,
   return std::nullopt;
 }
 
-/// The surface filled as it is; a sheet that cannot be, with its triangles made even or made anew,
-/// or else like a solid body.
+/// Whether the two faces of a sheet must be told apart in the outcome.
+enum class Faces { needed, any };
+
+/// The surface filled as it is; a sheet that cannot be, with its triangles made even or made anew
+/// where its faces are needed, or else like a solid body.
 meshing::MeshingResult filled(const TriMesh& surface, const meshing::MeshingOptions& options,
-                              const std::string& name, Record& record, const Monitor& monitor) {
+                              Faces faces, const std::string& name, Record& record,
+                              const Monitor& monitor) {
   std::string why;
   std::optional<meshing::MeshingResult> result;
   try {
     result = meshing::mesh_surface(surface, options, monitor);
-    if (!result->report.medial_failed) return std::move(*result);
+    if (faces == Faces::any || !result->report.medial_failed) return std::move(*result);
+    why = result->report.notes.front();
   } catch (const Error& error) {
     const bool may_help =
         error.code() == ErrorCode::below_quality || error.code() == ErrorCode::bad_mesh;
@@ -140,11 +154,8 @@ meshing::MeshingResult filled(const TriMesh& surface, const meshing::MeshingOpti
   }
   meshing::MeshingOptions as_sheet = options;
   as_sheet.method = meshing::Method::medial;
-  if (result) why = result->report.notes.front();
-  auto other = filled_otherwise(surface, as_sheet, name, why, record, monitor);
-  const bool better = other && (!result || options.layers || meets_limits(other->report) ||
-                                !meets_limits(result->report));
-  if (better) return std::move(*other);
+  if (auto other = filled_otherwise(surface, as_sheet, name, why, record, monitor))
+    return std::move(*other);
   if (!result) fail(ErrorCode::below_quality, name, ": ", why);
   return std::move(*result);
 }
@@ -207,7 +218,9 @@ Record run_mesh_file(const MeshRequest& request, const fs::path& out, const Moni
   const auto body = [&](const fs::path& partial, Record& record) {
     const TriMesh surface =
         usable_surface(io::read_surface(request.surface), name, record, monitor);
-    meshing::MeshingResult result = filled(surface, request.options, name, record, monitor);
+    const bool any = request.bone.empty() && !request.options.layers;
+    meshing::MeshingResult result =
+        filled(surface, request.options, any ? Faces::any : Faces::needed, name, record, monitor);
     if (!request.bone.empty() && has_sheet_tags(result.mesh))
       meshing::update_bone_side(result.mesh, io::read_surface(request.bone));
     add_figures(result, "", record);
@@ -231,8 +244,8 @@ Record run_mesh_stage(const fs::path& segment_folder, const meshing::MeshingOpti
               cartilage, " or ", bone);
       const TriMesh surface =
           usable_surface(surfaces.at(cartilage).mesh, cartilage, record, monitor);
-      meshing::MeshingResult result =
-          filled(surface, options, cartilage, record, part_of(monitor, "mesh", done, done + 0.5));
+      meshing::MeshingResult result = filled(surface, options, Faces::needed, cartilage, record,
+                                             part_of(monitor, "mesh", done, done + 0.5));
       if (has_sheet_tags(result.mesh))
         meshing::update_bone_side(result.mesh, surfaces.at(bone).mesh);
       add_figures(result, std::string(cartilage) + "_", record);

@@ -57,6 +57,18 @@ TEST(Rebuild, SmoothingRoundsEdgesAndLeavesWallsWhereTheyAre) {
   EXPECT_NEAR(extent(0.4).first, 1.2, 0.03);
   EXPECT_LT(extent(0.4).second, extent(0.0).second - 0.3);
 }
+TEST(Rebuild, ThickeningKeepsThinWallsAndTheLossIsTold) {
+  // a fin of a twentieth of a millimetre on a block
+  const TriMesh mesh = test::together(test::box(Vec3(0, 0, 0), Vec3(4, 4, 4)),
+                                      test::box(Vec3(3.9, 1.5, 1.51), Vec3(7, 2.5, 1.56)));
+  const Rebuilt thin = rebuild(mesh, {.spacing = 0.3}),
+                thick = rebuild(mesh, {.spacing = 0.3, .thickening = 0.2, .target_edge = 0.4});
+  EXPECT_NEAR(thin.largest_loss, 3.0, 0.5);
+  EXPECT_LT(thick.largest_loss, 0.3);
+  EXPECT_NEAR(thick.mesh.points.col(0).maxCoeff(), 7.2, 0.3);
+  EXPECT_NEAR(thick.mesh.points.col(0).minCoeff(), -0.2, 0.05);
+  EXPECT_LT(thick.largest_move, 0.35);
+}
 TEST(Rebuild, EdgeLengthIsAsAsked) {
   EXPECT_NEAR(mean_edge_length(rebuild(test::icosphere(3, 5.0), {.target_edge = 1.5}).mesh), 1.5,
               0.15);
@@ -74,6 +86,7 @@ TEST(Rebuild, RefusesSheetsAndLargeMoves) {
   EXPECT_THROW(rebuild(test::box(), {.spacing = 1e-4}), Error);
   EXPECT_THROW(rebuild(test::box(), {.target_edge = 0.0}), Error);
   EXPECT_THROW(rebuild(test::box(), {.smoothing = -1.0}), Error);
+  EXPECT_THROW(rebuild(test::box(), {.thickening = -1.0}), Error);
   EXPECT_THROW(rebuild(test::box(), {.max_move = -1.0}), Error);
 }
 TEST(Rebuild, IsBitIdenticalForOneAndEightThreads) {

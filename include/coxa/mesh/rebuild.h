@@ -11,6 +11,8 @@ struct RebuildOptions {
   double smoothing =
       0.0;  ///< mm, >= 0: standard deviation of a Gaussian over the distances, which rounds rims
             ///< and evens what is rougher; walls three times as thick hardly move
+  double thickening = 0.0;   ///< mm, >= 0: the surface is moved outwards by this, which keeps walls
+                             ///< thinner than the spacing
   double target_edge = 0.8;  ///< mm, > 0
   double max_move = 1.0;  ///< mm, >= 0. Refused where the new surface is farther from the old one.
 };
