@@ -133,9 +133,8 @@ int main(int argc, char** argv) {
       if (word == "--rotation") way.rotation = std::stod(argv[++k]);
     }
     const auto request = pipeline::read_joint_request(argv[1]);
-    joint::JointModel model = pipeline::read_joint_model(
+    const joint::JointModel model = pipeline::read_joint_model(
         request, pipeline::read_motion_artefacts(request.motion, request.side).frames);
-    model.hip_bone = model.femur = {};
     std::printf("%d + %d tetrahedra\n", static_cast<int>(model.acetabular_cartilage.n_tets()),
                 static_cast<int>(model.femoral_cartilage.n_tets()));
     const joint::LoadCase load = pipeline::joint_load(request, model);
