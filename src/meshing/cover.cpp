@@ -24,7 +24,7 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double kMuchTooFar = 0.2;  // mm
 // ranks of elements (see `element_rank`) around a node that is moved, and where it is urgent
-constexpr double kRank = 1.0, kUrgentRank = 0.85;
+constexpr double kRank = 1.2, kUrgentRank = 0.85;
 
 // of ascending lists
 std::vector<Index> united(const std::vector<Index>& a, const std::vector<Index>& b) {
