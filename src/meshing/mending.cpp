@@ -84,6 +84,12 @@ void raise_freely(TetGrid& grid, const SlideGuide& guide) {
   }
 }
 
+bool has_poor_element(const TetGrid& grid) {
+  return std::any_of(grid.tets.begin(), grid.tets.end(), [&](const Tet& t) {
+    return t[0] >= 0 && element_rank(grid, t) < kGoodEnough;
+  });
+}
+
 Index drop_poor_elements(TetGrid& grid) {
   Index dropped = 0;
   for (bool again = true; again;) {

@@ -13,6 +13,9 @@ Index untangle_freely(TetGrid& grid, const SlideGuide& guide);
 /// may leave it, by as little as helps.
 void raise_freely(TetGrid& grid, const SlideGuide& guide);
 
+/// Whether an element is so near to the limits that its nodes may leave the surface for it.
+bool has_poor_element(const TetGrid& grid);
+
 /// Drops elements still far below the limits that stick out at the boundary, where that leaves it
 /// manifold. @returns how many went
 Index drop_poor_elements(TetGrid& grid);

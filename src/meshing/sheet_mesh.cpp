@@ -101,6 +101,7 @@ void cover_and_raise(TetGrid& grid, const TriMesh& surface, const SlideGuide& gu
       flip_poor(grid, guide, {.below = 0.35, .max_tets = allowed_tets(options), .collapse = false});
     raise_worst(grid, guide);
   }
+  if (has_poor_element(grid)) raise_freely(grid, guide);
 }
 
 }  // namespace

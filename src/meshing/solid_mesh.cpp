@@ -101,6 +101,7 @@ void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface,
     flip(0.35);
     raise_worst(grid, guide);
   }
+  if (rounds > 0 && has_poor_element(grid)) raise_freely(grid, guide);
 }
 
 void add_notes(const TriMesh& surface, double flatness, MeshingReport& report) {
