@@ -9,6 +9,8 @@
 
 #include <Eigen/Geometry>
 
+#include <vector>
+
 namespace coxa::meshing {
 
 const TriMesh shell = test::lunate_shell(25.0, 1.6);
@@ -43,6 +45,48 @@ TEST(MeshSurface, IsTheSameForOneAndEightThreads) {
   const MeshingResult one = with_threads(1, run), eight = with_threads(8, run);
   EXPECT_EQ(one.mesh.points, eight.mesh.points);
   EXPECT_EQ(one.mesh.tets, eight.mesh.tets);
+}
+
+/// Edges from each node to the nearest node of a facet with the tag.
+std::vector<int> steps_from(const TetMesh& mesh, FacetTag tag) {
+  std::vector<int> steps(static_cast<std::size_t>(mesh.points.rows()), 1000);
+  for (Index f = 0; f < mesh.facets.rows(); ++f)
+    for (int k = 0; k < 3; ++k)
+      if (mesh.facet_tags[static_cast<std::size_t>(f)] == tag)
+        steps[static_cast<std::size_t>(mesh.facets(f, k))] = 0;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (Index i = 0; i < mesh.tets.size(); ++i) {
+      const Index t = i / 4;
+      for (int k = 0; k < 4; ++k) {
+        int& mine = steps[static_cast<std::size_t>(mesh.tets.data()[i])];
+        const int theirs = 1 + steps[static_cast<std::size_t>(mesh.tets(t, k))];
+        if (theirs < mine) {
+          mine = theirs;
+          changed = true;
+        }
+      }
+    }
+  }
+  return steps;
+}
+
+TEST(MeshSurface, HasExactlyTheLayersAskedForAwayFromTheRim) {
+  for (const int layers : {1, 2, 3}) {
+    const TetMesh mesh = mesh_surface(shell, {.layers = layers, .max_tets = 1500 * layers}).mesh;
+    const std::vector<int> from_bone = steps_from(mesh, FacetTag::bone_side),
+                           from_other = steps_from(mesh, FacetTag::articular_side),
+                           from_rim = steps_from(mesh, FacetTag::rim);
+    Index checked = 0;
+    for (std::size_t v = 0; v < from_bone.size(); ++v) {
+      if (from_rim[v] <= layers || from_bone[v] == 1000) continue;
+      // every node lies on one level: as many layers below it as are missing above it
+      EXPECT_EQ(from_bone[v] + from_other[v], layers)
+          << "node " << v << ", " << layers << " layers";
+      ++checked;
+    }
+    EXPECT_GT(checked, 50);
+  }
 }
 
 TEST(MeshSurface, RefusesOptionsOutOfRangeAndOpenSurfaces) {
