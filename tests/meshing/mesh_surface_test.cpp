@@ -73,7 +73,7 @@ std::vector<int> steps_from(const TetMesh& mesh, FacetTag tag) {
 
 TEST(MeshSurface, HasExactlyTheLayersAskedForAwayFromTheRim) {
   for (const int layers : {1, 2, 3}) {
-    const TetMesh mesh = mesh_surface(shell, {.layers = layers, .max_tets = 1500 * layers}).mesh;
+    const TetMesh mesh = mesh_surface(shell, {.layers = layers, .max_tets = 4000 * layers}).mesh;
     const std::vector<int> from_bone = steps_from(mesh, FacetTag::bone_side),
                            from_other = steps_from(mesh, FacetTag::articular_side),
                            from_rim = steps_from(mesh, FacetTag::rim);
