@@ -57,16 +57,22 @@ class Relaxation {
 class Progress {
  public:
   bool stalled(double residual, double penetration) {
-    const bool better = residual < kClearly * residual_ || penetration < kClearly * penetration_;
-    residual_ = std::min(residual_, residual);
-    penetration_ = std::min(penetration_, penetration);
+    const bool better = improves(residual, residual_) | improves(penetration, penetration_);
     waiting_ = better ? 0 : waiting_ + 1;
     return waiting_ > kPatience;
   }
+  /// New multipliers raise the residual for a while.
+  void multipliers_changed() { residual_ = kInfinity; }
 
  private:
   static constexpr int kPatience = 6;
   static constexpr double kClearly = 0.8;
+  /// Against the last mark, so that many small steps count as well as one large.
+  static bool improves(double value, double& mark) {
+    if (!(value < kClearly * mark)) return false;
+    mark = value;
+    return true;
+  }
   double residual_ = kInfinity, penetration_ = kInfinity;
   int waiting_ = 0;
 };
@@ -279,6 +285,7 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
     if (settling.residual <= 100.0 * limits.residual && settling.penetration > limits.penetration) {
       state.contact.update_multipliers(state.x, limits.penetration);
       relaxation = {};
+      progress.multipliers_changed();
     }
     const bool only_imbalance =
         settling.residual <= limits.residual && settling.imbalance > limits.imbalance;

@@ -17,7 +17,7 @@ struct JointOptions {
   double max_rotation_step = radians(3.0);  ///< rad, > 0: larger movements are cut into sub-steps
   double max_translation_step = 0.25;       ///< mm, > 0, likewise of a prescribed translation
   int max_newton_iterations = 30;           ///< > 0 for one frozen set of contact pairs
-  int max_contact_updates = 40;  ///< > 0 rounds of contact search and multipliers a sub-step
+  int max_contact_updates = 80;  ///< > 0 rounds of contact search and multipliers a sub-step
   int max_cutbacks = 3;          ///< >= 0: a failing sub-step is halved so many times
   double max_translation = 5.0;  ///< mm, > 0: a head that goes farther has left the socket
   std::optional<double> centre_shift =
