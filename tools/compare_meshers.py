@@ -64,7 +64,8 @@ def by_tetgen(_arguments, judge, surface, work, size):
     lines = [f"{len(points)} 3 0 0"] + [f"{i} {p[0]:.9f} {p[1]:.9f} {p[2]:.9f}" for i, p in enumerate(points)]
     lines += [f"{len(triangles)} 0"] + [f"1\n3 {t[0]} {t[1]} {t[2]}" for t in triangles] + ["0", "0"]
     poly.write_text("\n".join(lines) + "\n")
-    # Y keeps the surface's triangles: without it thin shells get ten times the elements
+    # Y keeps the surface's triangles: without it thin shells get ten times the elements; where they are large, their number
+    # bounds that of the elements
     seconds = run(["tetgen", f"-pYq1.2/18O9/7a{size ** 3 / 8.5:.6f}", poly], work / "tetgen.log")
     return seconds, work / "tetgen.1.node"
 
@@ -79,17 +80,21 @@ def by_gmsh(_arguments, judge, surface, work, size):
     script = work / "gmsh.geo"
     script.write_text(f'Merge "gmsh.stl";\nClassifySurfaces{{40*Pi/180, 1, 1, Pi}};\nCreateGeometry;\n'
                       f"Surface Loop(1) = Surface{{:}};\nVolume(1) = {{1}};\nMesh.MeshSizeMin = {size};\nMesh.MeshSizeMax = {size};\n"
-                      "Mesh.Optimize = 1;\nMesh.OptimizeNetgen = 1;\n")
+                      "Mesh.Optimize = 1;\nMesh.OptimizeThreshold = 0.5;\n")  # Debian's gmsh has no Netgen
     seconds = run(["gmsh", script, "-3", "-nt", "1", "-format", "mesh", "-o", work / "gmsh.mesh"], work / "gmsh.log")
     return seconds, work / "gmsh.mesh"
 
 
-def by_cgal(arguments, judge, surface, work, size):
+def by_cgal(arguments, judge, surface, work, size, ridge_degrees=180):
     points, triangles = surface_arrays(judge, surface)
     off = work / "cgal.off"
     off.write_text(f"OFF\n{len(points)} {len(triangles)} 0\n" + "\n".join(f"{p[0]:.9f} {p[1]:.9f} {p[2]:.9f}" for p in points) + "\n" +
                    "\n".join(f"3 {t[0]} {t[1]} {t[2]}" for t in triangles) + "\n")
-    return run([arguments.cgal, off, size, 0.05, work / "cgal.mesh"], work / "cgal.log"), work / "cgal.mesh"
+    return run([arguments.cgal, off, size, 0.05, ridge_degrees, work / "cgal.mesh"], work / "cgal.log"), work / "cgal.mesh"
+
+
+def by_cgal_with_ridges(arguments, judge, surface, work, size):
+    return by_cgal(arguments, judge, surface, work, size, 60)
 
 
 def measured(judge, mesh, surface):
@@ -151,8 +156,9 @@ def main():
     import mesh_quality as judge
 
     arguments.work.mkdir(parents=True, exist_ok=True)
-    meshers = {"coxa": by_coxa, "TetGen": by_tetgen, "Gmsh": by_gmsh, "CGAL": by_cgal}
-    there = {"coxa": arguments.coxa.exists(), "TetGen": shutil.which("tetgen"), "Gmsh": shutil.which("gmsh"), "CGAL": arguments.cgal.exists()}
+    meshers = {"coxa": by_coxa, "TetGen": by_tetgen, "Gmsh": by_gmsh, "CGAL": by_cgal, "CGAL, ridges": by_cgal_with_ridges}
+    there = {"coxa": arguments.coxa.exists(), "TetGen": shutil.which("tetgen"), "Gmsh": shutil.which("gmsh"), "CGAL": arguments.cgal.exists(),
+             "CGAL, ridges": arguments.cgal.exists()}
     gathered = {}
     print("| surface | mesher | tets | aspect mean | p05 | min | dihedral min | max | mean | inverted | envelope rms | max | s |")
     print("|---|---|---|---|---|---|---|---|---|---|---|---|---|")
