@@ -4,6 +4,7 @@
 #include <coxa/io/files.h>
 #include <coxa/io/surfaces.h>
 #include <coxa/io/tets.h>
+#include <coxa/mesh/measures.h>
 #include <coxa/mesh/rebuild.h>
 #include <coxa/mesh/remesh.h>
 #include <coxa/mesh/repair.h>
@@ -33,6 +34,23 @@ constexpr double kLargestLoss = 0.3, kThickening = 0.2;
 // but another surface
 constexpr double kLargestEvening = 2.0;
 
+// a piece with more than this share of the largest one's area is a body of its own
+constexpr double kSecondBody = 0.1;
+
+/// Whether a surface is several bodies: made anew they would be one, which nobody asked for.
+bool has_second_body(const TriMesh& surface) {
+  const std::vector<Index> piece = triangle_components(surface);
+  const VecX areas = triangle_areas(surface);
+  std::vector<double> area;
+  for (std::size_t t = 0; t < piece.size(); ++t) {
+    const auto p = static_cast<std::size_t>(piece[t]);
+    if (area.size() <= p) area.resize(p + 1, 0.0);
+    area[p] += areas[static_cast<Index>(t)];
+  }
+  std::sort(area.rbegin(), area.rend());
+  return area.size() > 1 && area[1] > kSecondBody * area[0];
+}
+
 /// Places where a closed surface cuts itself are evened out first, which keeps its triangles; the
 /// rest is repaired.
 TriMesh made_valid(TriMesh surface, const ValidityReport& before, const std::string& name,
@@ -53,6 +71,7 @@ TriMesh made_valid(TriMesh surface, const ValidityReport& before, const std::str
     for (const std::string& line : repaired.report.lines()) changes.push_back(line);
     return repaired.mesh;
   } catch (const Error& refused) {
+    if (has_second_body(surface)) fail(refused.code(), name, ": ", refused.what());
     refusal = refused.what();
   }
   try {
