@@ -12,7 +12,9 @@ namespace {
 // articular surfaces look for each other this far, mm; deeper overlaps and wider gaps are not
 // paired
 constexpr double kSearchDistance = 4.0;
-// and only where they face each other: not at all beyond about 80 degrees, fully within 60
+// bare bone is rarely reached and never deep: most of the femoral cartilage has none so near, mm
+constexpr double kBoneSearch = 1.5;
+// both only where they face each other: not at all beyond about 80 degrees, fully within 60
 constexpr double kFacing = 0.2, kFacingFully = 0.5;
 
 std::vector<Index> nodes_of(const Triangles& facets, Index first) {
@@ -141,11 +143,11 @@ std::optional<collide::SurfaceContact> HipSystem::make_bone_contact(double stiff
     const Vec3 arm = model_.femoral_cartilage.points.row(node).transpose() - centre_;
     radius = std::max(radius, arm.norm());
   }
-  TriMesh bone = part_within(model_.hip_bone, centre_, radius + kSearchDistance + reach);
+  TriMesh bone = part_within(model_.hip_bone, centre_, radius + kBoneSearch + reach);
   if (bone.empty()) return std::nullopt;
   return collide::SurfaceContact(carried(femoral, n_acetabular_, translation()), std::move(bone),
                                  {.stiffness = stiffness,
-                                  .search_distance = kSearchDistance,
+                                  .search_distance = kBoneSearch,
                                   .facing = kFacing,
                                   .facing_fully = kFacingFully,
                                   .normal = collide::ContactNormal::smooth,
