@@ -83,15 +83,17 @@ std::optional<Vec3> line_hit(const OtherSurface& other, Index triangle, const Ve
 /// Where the line along the smooth normal arrives; at a crease, where none does, the nearest point.
 FacedPoint along_smooth_normal(const OtherSurface& other, const Vec3& point,
                                const NearestPoint& nearest) {
-  const FacedPoint at_nearest{nearest.triangle, nearest.triangle, nearest.barycentric,
-                              smooth_normal(other, nearest.triangle, nearest.barycentric), 1.0};
-  FacedPoint faced = at_nearest;
+  FacedPoint faced{nearest.triangle, nearest.triangle, nearest.barycentric, Vec3::Zero(), 1.0};
   // fixed point of "the normal where the line along the normal arrives"; contracts as gap over
   // radius
   for (int iteration = 0; iteration < 3; ++iteration) {
     faced.normal = smooth_normal(other, faced.triangle, faced.barycentric);
     const auto hit = line_hit(other, faced.triangle, point, faced.normal);
-    if (!hit || hit->minCoeff() < -kFarthestMiss) return at_nearest;
+    if (!hit || hit->minCoeff() < -kFarthestMiss) {
+      faced.barycentric = nearest.barycentric;
+      faced.normal = smooth_normal(other, nearest.triangle, nearest.barycentric);
+      return faced;
+    }
     faced.barycentric = *hit;
   }
   return faced;

@@ -69,6 +69,7 @@ SurfaceContact::SurfaceContact(ParticleSurface slave, TriMesh obstacle,
   check(options);
   if (other_mesh_.empty()) fail(ErrorCode::bad_mesh, "contact obstacle has no triangle");
   tree_.emplace(other_mesh_.points, other_mesh_.triangles);
+  other_normals_ = vertex_normals(other_mesh_);
   make_samples();
 }
 
@@ -109,6 +110,7 @@ void SurfaceContact::make_samples() {
 void SurfaceContact::prepare_other(const VecX& x) {
   if (!other_) return;
   other_mesh_.points = surface_points(*other_, x);
+  other_normals_ = vertex_normals(other_mesh_);
   if (tree_) {
     tree_->update_points(other_mesh_.points);
   } else {
@@ -121,6 +123,7 @@ void SurfaceContact::update_obstacle(const Points& points) {
   require(points.rows() == other_mesh_.points.rows(), "moved obstacle has ", points.rows(),
           " vertices, expected ", other_mesh_.points.rows());
   other_mesh_.points = points;
+  other_normals_ = vertex_normals(other_mesh_);
   tree_->update_points(points);
 }
 
@@ -177,16 +180,16 @@ void SurfaceContact::note_search(const VecX& x, const Points& slave) {
 void SurfaceContact::update_pairs(const VecX& x, double reach) {
   prepare_other(x);
   const TriMesh slave{surface_points(slave_, x), slave_.triangles};
-  const Points facet_normals = triangle_normals(slave), normals = vertex_normals(slave);
-  const Points other_normals = vertex_normals(other_mesh_);
-  const OtherSurface other{*tree_, other_normals, boundary_edge_, boundary_vertex_};
+  const bool at_vertices = options_.quadrature == ContactQuadrature::vertices;
+  const Points facet_normals = triangle_normals(slave);
+  const Points normals = at_vertices ? vertex_normals(slave) : Points();
+  const OtherSurface other{*tree_, other_normals_, boundary_edge_, boundary_vertex_};
   if (options_.quadrature == ContactQuadrature::cut) {
     samples_ = cut_samples(slave, facet_normals, *tree_, options_.search_distance);
   } else {
     update_areas(triangle_areas(slave));
   }
 
-  const bool at_vertices = options_.quadrature == ContactQuadrature::vertices;
   if (nearest_.size() != samples_.size()) nearest_.assign(samples_.size(), -1);
   const std::vector<char> wanted = owners_within(reach, slave.points);
   std::vector<std::optional<ContactPair>> found(samples_.size());
@@ -199,7 +202,7 @@ void SurfaceContact::update_pairs(const VecX& x, double reach) {
     for (int k = 0; k < 3; ++k) {
       const Index v = slave_.triangles(sample.triangle, k);
       point += sample.barycentric[k] * slave.points.row(v).transpose();
-      vertex_normal += sample.barycentric[k] * normals.row(v).transpose();
+      if (at_vertices) vertex_normal += sample.barycentric[k] * normals.row(v).transpose();
     }
     const Vec3 normal =
         (at_vertices ? vertex_normal : facet_normals.row(sample.triangle).transpose()).normalized();

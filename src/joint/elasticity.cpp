@@ -7,9 +7,6 @@
 namespace coxa::joint {
 namespace {
 
-// the solid's share of cartilage: when its fluid is out, no more volume can go
-// (60 to 85 % of its weight is water)
-constexpr double kSolidShare = 0.25;
 // what the solid resists with, in confined moduli of the tissue: much stiffer, and still solvable
 constexpr double kSolidStiffness = 100.0;
 

@@ -6,6 +6,7 @@
 #include <coxa/geom/triangle_tree.h>
 #include <coxa/mesh/measures.h>
 #include <coxa/mesh/topology.h>
+#include <coxa/mesh/vertex_normals.h>
 
 #include <Eigen/Geometry>
 
@@ -53,21 +54,19 @@ std::vector<bool> hanging(const TriMesh& mesh, const MeshEdges& edges,
                           const std::vector<Index>& patch) {
   const std::size_t n = at(1 + *std::max_element(patch.begin(), patch.end()));
   std::vector<bool> crowded(n, false), open(n, false);
-  std::vector<double> area(n, 0.0);
-  const VecX areas = triangle_areas(mesh);
   for (Index t = 0; t < mesh.n_triangles(); ++t) {
     const std::size_t p = at(patch[at(t)]);
-    area[p] += areas[t];
     for (int k = 0; k < 3; ++k) {
       const std::size_t count = edges.triangles[edges.of_triangle(t, k)].size();
       crowded[p] = crowded[p] || count > 2;
       open[p] = open[p] || count == 1;
     }
   }
-  const auto largest =
-      static_cast<std::size_t>(std::max_element(area.begin(), area.end()) - area.begin());
+  Eigen::Index largest = 0;
+  piece_areas(mesh, patch).maxCoeff(&largest);
   std::vector<bool> result(n, false);
-  for (std::size_t p = 0; p < n; ++p) result[p] = crowded[p] && open[p] && p != largest;
+  for (std::size_t p = 0; p < n; ++p)
+    result[p] = crowded[p] && open[p] && p != static_cast<std::size_t>(largest);
   return result;
 }
 
@@ -122,11 +121,6 @@ std::vector<Wedge> wedges_of(const TriMesh& mesh, Index a, Index b,
   return wedges;
 }
 
-Vec3 unit_normal(const TriMesh& mesh, Index t) {
-  const auto p = [&](int k) { return Vec3(mesh.points.row(mesh.triangles(t, k))); };
-  return (p(1) - p(0)).cross(p(2) - p(0)).normalized();
-}
-
 // New vertices at the middles of crowded edges: their places, and one per triangle and edge.
 struct Middles {
   std::vector<Vec3> places;
@@ -135,13 +129,14 @@ struct Middles {
 
 Middles part_edges(const TriMesh& mesh, RepairReport& report) {
   const MeshEdges edges = mesh_edges(mesh);
+  const Points normals = triangle_normals(mesh);
   Middles middles{{}, Triangles::Constant(mesh.n_triangles(), 3, -1)};
   for (Index e = 0; e < edges.vertices.rows(); ++e) {
     if (edges.triangles[e].size() <= 2) continue;
     const Index a = edges.vertices(e, 0), b = edges.vertices(e, 1);
     const Vec3 p = mesh.points.row(a), q = mesh.points.row(b);
     for (const auto& [against, along] : wedges_of(mesh, a, b, edges.triangles[e])) {
-      const Vec3 outward = unit_normal(mesh, against) + unit_normal(mesh, along);
+      const Vec3 outward = (normals.row(against) + normals.row(along)).transpose();
       const double apart = std::min(kApart, kApartShare * (q - p).norm());
       const Index made = mesh.n_vertices() + static_cast<Index>(middles.places.size());
       middles.places.push_back(0.5 * (p + q) - apart * outward / std::max(1.0, outward.norm()));
@@ -221,6 +216,7 @@ TriMesh part_at_crowded_edges(const TriMesh& mesh, RepairReport& report) {
 
 TriMesh split_touching_sheets(TriMesh mesh, RepairReport& report) {
   const TriMesh before = mesh;
+  const Points normals = triangle_normals(mesh);
   const auto fans = vertex_fans(mesh);
   Index next = mesh.n_vertices();
   for (const auto& fan_list : fans)
@@ -235,7 +231,7 @@ TriMesh split_touching_sheets(TriMesh mesh, RepairReport& report) {
       Vec3 outward = Vec3::Zero();
       double shortest = kInfinity;
       for (const Index t : fans[at(v)][fan]) {
-        outward += unit_normal(before, t);
+        outward += normals.row(t).transpose();
         for (int k = 0; k < 3; ++k) {
           const Index corner = before.triangles(t, k);
           if (corner == v)

@@ -33,6 +33,15 @@ VecX triangle_areas(const TriMesh& mesh) {
   return areas;
 }
 
+VecX piece_areas(const TriMesh& mesh, const std::vector<Index>& piece_of) {
+  const VecX areas = triangle_areas(mesh);
+  VecX sums =
+      VecX::Zero(piece_of.empty() ? 0 : 1 + *std::max_element(piece_of.begin(), piece_of.end()));
+  for (Index t = 0; t < mesh.n_triangles(); ++t)
+    sums[piece_of[static_cast<std::size_t>(t)]] += areas[t];
+  return sums;
+}
+
 double area(const TriMesh& mesh) { return triangle_areas(mesh).sum(); }
 
 double volume(const TriMesh& mesh) {

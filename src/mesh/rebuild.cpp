@@ -126,10 +126,7 @@ std::vector<float> blurred(const std::vector<float>& values, const Grid& grid, i
 
 TriMesh without_crumbs(const TriMesh& mesh) {
   const std::vector<Index> piece = triangle_components(mesh);
-  const VecX areas = triangle_areas(mesh);
-  VecX piece_area = VecX::Zero(1 + *std::max_element(piece.begin(), piece.end()));
-  for (Index t = 0; t < mesh.n_triangles(); ++t)
-    piece_area[piece[static_cast<std::size_t>(t)]] += areas[t];
+  const VecX piece_area = piece_areas(mesh, piece);
   std::vector<Index> kept;
   for (Index t = 0; t < mesh.n_triangles(); ++t)
     if (piece_area[piece[static_cast<std::size_t>(t)]] >= 0.01 * piece_area.maxCoeff())

@@ -189,9 +189,7 @@ double flip_quality(const TetGrid& grid, const Tet& t) {
 Index flip_poor(TetGrid& grid, const SlideGuide& guide, const FlipRules& rules) {
   constexpr int kPasses = 4;
   const FlipGuard guard(guide, rules.tolerance);
-  const auto living =
-      std::count_if(grid.tets.begin(), grid.tets.end(), [](const Tet& t) { return t[0] >= 0; });
-  Flipping flipping{grid, guard, rules.max_tets - living};
+  Flipping flipping{grid, guard, rules.max_tets - grid.n_living()};
   Index changes = 0;
   for (int pass = 0; pass < kPasses; ++pass) {
     std::vector<std::pair<double, Index>> poor;

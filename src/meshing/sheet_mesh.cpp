@@ -93,9 +93,7 @@ void cover_and_raise(TetGrid& grid, const TriMesh& surface, const SlideGuide& gu
                      const MeshingOptions& options) {
   constexpr int kRounds = 3;
   for (int k = 0; k < kRounds; ++k) {
-    const auto living =
-        std::count_if(grid.tets.begin(), grid.tets.end(), [](const Tet& t) { return t[0] >= 0; });
-    const std::ptrdiff_t room = options.layers ? 0 : allowed_tets(options) - living;
+    const std::ptrdiff_t room = options.layers ? 0 : allowed_tets(options) - grid.n_living();
     if (cover_far_places(grid, surface, {.room = room}) == 0) break;
     if (!options.layers)
       flip_poor(grid, guide, {.below = 0.35, .max_tets = allowed_tets(options), .collapse = false});

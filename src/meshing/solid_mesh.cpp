@@ -81,10 +81,9 @@ void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface,
     if (k > 0) flip(0.5);
   }
   const auto room = [&]() -> std::ptrdiff_t {
-    const auto living =
-        std::count_if(grid.tets.begin(), grid.tets.end(), [](const Tet& t) { return t[0] >= 0; });
-    return connections == Connections::may_change ? options.max_tets.value_or(kMostTets) - living
-                                                  : 0;
+    return connections == Connections::may_change
+               ? options.max_tets.value_or(kMostTets) - grid.n_living()
+               : 0;
   };
   for (int k = 0; k < kCoverRounds && cover_far_places(grid, surface, {.room = room()}) > 0; ++k) {
     flip(0.5);

@@ -1,8 +1,7 @@
 #include "surface_places.h"
 
 #include <coxa/mesh/topology.h>
-
-#include <Eigen/Geometry>
+#include <coxa/mesh/vertex_normals.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,23 +11,18 @@ namespace {
 
 constexpr double kSmoothCosine = 0.906;  // between the normals at an edge that is no ridge
 
-Vec3 unit_normal(const TriMesh& mesh, Index t) {
-  const auto p = [&](int k) { return Vec3(mesh.points.row(mesh.triangles(t, k))); };
-  return (p(1) - p(0)).cross(p(2) - p(0)).normalized();
-}
-
 }  // namespace
 
 std::vector<Vec3> places_on(const TriMesh& surface, double spacing) {
   std::vector<Vec3> places;
   for (const auto& p : surface.points.rowwise()) places.push_back(p.transpose());
   const MeshEdges edges = mesh_edges(surface);
+  const Points normals = triangle_normals(surface);
   for (Index e = 0; e < edges.vertices.rows(); ++e) {
     const Vec3 a = surface.points.row(edges.vertices(e, 0)),
                b = surface.points.row(edges.vertices(e, 1));
     const auto sides = edges.triangles[e];
-    const bool ridge =
-        unit_normal(surface, sides.front()).dot(unit_normal(surface, sides.back())) < kSmoothCosine;
+    const bool ridge = normals.row(sides.front()).dot(normals.row(sides.back())) < kSmoothCosine;
     const int parts =
         ridge ? std::max(2, static_cast<int>(std::ceil((b - a).norm() / spacing))) : 2;
     for (int k = 1; k < parts; ++k) places.push_back(a + (b - a) * k / parts);

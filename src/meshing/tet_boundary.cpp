@@ -77,9 +77,7 @@ TetMesh to_tet_mesh(const TetGrid& grid) {
   for (std::size_t v = 0; v < number.size(); ++v) {
     if (number[v] >= 0) mesh.points.row(number[v]) = grid.x[v];
   }
-  const auto living =
-      std::count_if(grid.tets.begin(), grid.tets.end(), [](const Tet& t) { return t[0] >= 0; });
-  mesh.tets.resize(living, 4);
+  mesh.tets.resize(grid.n_living(), 4);
   Eigen::Index row = 0;
   for (const Tet& t : grid.tets) {
     if (t[0] < 0) continue;

@@ -26,6 +26,10 @@ void TetGrid::remove(Index t) {
   tet[0] = -1;
 }
 
+std::ptrdiff_t TetGrid::n_living() const {
+  return std::count_if(tets.begin(), tets.end(), [](const Tet& t) { return t[0] >= 0; });
+}
+
 void TetGrid::link() {
   tets.erase(std::remove_if(tets.begin(), tets.end(), [](const Tet& t) { return t[0] < 0; }),
              tets.end());

@@ -49,6 +49,7 @@ struct TetGrid {
   std::vector<std::vector<Index>> around;  ///< living tets of each node, ascending order not kept
 
   bool alive(Index t) const { return tets[static_cast<std::size_t>(t)][0] >= 0; }
+  std::ptrdiff_t n_living() const;
   Index add(const Tet& tet);
   void remove(Index t);
   void link();  ///< rebuilds `around` and drops removed tets

@@ -19,8 +19,6 @@ constexpr double kCentreShift = 0.1;
 constexpr double kTonnePerKilogram = 1e-3;
 // share of the joint force on bare bone that no healthy hip has
 constexpr double kMuchOnBone = 0.1;
-// less of its volume than this is left to tissue only where a thin edge is crushed
-constexpr double kCrushed = 0.25;
 
 const char* name_of(Loading loading) {
   return loading == Loading::joint_force   ? "joint_force"
@@ -93,7 +91,7 @@ void add_figures(const joint::JointResult& result, Record& record) {
           join_text("frame ", frame.frame, " did not converge: ", frame.reason));
     }
     if (frame.status != joint::FrameStatus::converged) continue;
-    if (frame.crush.least_volume_ratio < kCrushed) {
+    if (frame.crush.least_volume_ratio < joint::kSolidShare) {
       record.warnings.push_back(join_text(
           "frame ", frame.frame, ": ", frame.crush.femoral ? "femoral" : "acetabular",
           " cartilage near ", frame.crush.place.transpose(), " is squeezed to ",

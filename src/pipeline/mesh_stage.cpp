@@ -39,16 +39,8 @@ constexpr double kSecondBody = 0.1;
 
 /// Whether a surface is several bodies: made anew they would be one, which nobody asked for.
 bool has_second_body(const TriMesh& surface) {
-  const std::vector<Index> piece = triangle_components(surface);
-  const VecX areas = triangle_areas(surface);
-  std::vector<double> area;
-  for (std::size_t t = 0; t < piece.size(); ++t) {
-    const auto p = static_cast<std::size_t>(piece[t]);
-    if (area.size() <= p) area.resize(p + 1, 0.0);
-    area[p] += areas[static_cast<Index>(t)];
-  }
-  std::sort(area.rbegin(), area.rend());
-  return area.size() > 1 && area[1] > kSecondBody * area[0];
+  const VecX areas = piece_areas(surface, triangle_components(surface));
+  return (areas.array() > kSecondBody * areas.maxCoeff()).count() > 1;
 }
 
 /// Places where a closed surface cuts itself are evened out first, which keeps its triangles; the

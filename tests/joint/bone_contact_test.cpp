@@ -14,8 +14,7 @@ constexpr double kCavity = 25.2;  // mm, radius of the bone's hollow; the head's
 JointModel on_a_pad() {
   JointModel model = test::make_ball_in_cup(
       {.cup_angle = radians(18.0), .cup_rings = 6, .head_rings = 17, .layers = 1});
-  model.hip_bone = test::icosphere(5, kCavity, Vec3::Zero());
-  model.hip_bone.triangles.col(1).swap(model.hip_bone.triangles.col(2));  // bone is outside
+  model.hip_bone = test::turned_over(test::icosphere(5, kCavity, Vec3::Zero()));  // bone is outside
   model.femur = test::icosphere(2, 5.0, Vec3::Zero());
   return model;
 }

@@ -162,6 +162,7 @@ class SurfaceContact : public dynamics::Force {
   ParticleSurface slave_;
   std::optional<ParticleSurface> other_;  ///< nullopt: rigid obstacle
   TriMesh other_mesh_;                    ///< current positions of the other surface
+  Points other_normals_;                  ///< at its vertices, for these positions
   std::vector<ContactSample> samples_;    ///< as of the last update of pairs
   Points slave_bulge_, other_bulge_;      ///< per triangle and edge, mm; empty: flat facets
   /// Of the last search everywhere: gap of each owner, mm (NaN without a pair), and the surfaces.

@@ -12,6 +12,10 @@ namespace coxa::joint {
 /// it may be nearly incompressible.
 enum class MaterialLaw { st_venant_kirchhoff, corotational, neo_hookean };
 
+/// The solid's share of cartilage's volume: when its fluid is out, no more can go (60 to 85 % of
+/// its weight is water). Less is left of an element only where a thin edge is crushed.
+inline constexpr double kSolidShare = 0.25;
+
 struct CartilageMaterial {
   MaterialLaw law = MaterialLaw::corotational;
   double youngs_modulus = 12.0;  ///< MPa, > 0

@@ -2,12 +2,16 @@
 
 #include <coxa/mesh/tri_mesh.h>
 
+#include <vector>
+
 namespace coxa {
 
 /// Area of every triangle, mm². T values.
 VecX triangle_areas(const TriMesh& mesh);
 /// Surface area, mm².
 double area(const TriMesh& mesh);
+/// Area of every piece, mm². @param piece_of number of the piece of every triangle, from 0
+VecX piece_areas(const TriMesh& mesh, const std::vector<Index>& piece_of);
 /// Volume enclosed by a closed surface, mm³; negative where it is oriented inward.
 double volume(const TriMesh& mesh);
 /// Centre of mass of the volume enclosed by a closed surface, mm.
