@@ -15,8 +15,9 @@ namespace {
 // Markers over moving tissue share their movement: the part they have in common has half the
 // variance of what each has of its own; between 0.3 and 1 results hardly change.
 constexpr double kShared = 0.5;
-// Of the distance of a logarithm of an axis' variance from their mean so much is kept.
-constexpr double kKeptOfAxes = 0.7;
+// Of what tells markers, and axes, apart a movement about one axis is believed a quarter; the rest
+// falls with the square of the number of axes.
+constexpr double kDisbelieved = 0.75;
 constexpr double kSmallestVariance = 1e-6;  // mm²
 
 // frames that show the same markers
@@ -151,9 +152,8 @@ ArtefactModel estimate_artefact(const ThighObservations& thigh, const KnownError
   const std::vector<FrameGroup> groups = frame_groups(thigh);
   const PoseEstimate rigid = estimate_rigid(thigh);
   std::vector<Mat3> R = rigid.R_PF;
-  // half of what tells markers apart is believed where the thigh turns about one axis only, 4/5
-  // where it turns as much about two
-  const double axes = axes_of_movement(R, rigid.valid), kept = axes * axes / (1.0 + axes * axes);
+  const double axes = axes_of_movement(R, rigid.valid);
+  const double kept = 1.0 - kDisbelieved / (axes * axes);
   ArtefactModel model{.marker = VecX::Constant(K, kFirstVariance)};
   while (!model.converged && model.iterations < kMaxIterations) {
     const AxisCovariance artefact = model.covariance();
@@ -164,7 +164,7 @@ ArtefactModel estimate_artefact(const ThighObservations& thigh, const KnownError
         kept);
     VecX axis = rescaled(model.axis, shares.shown.colwise().sum().transpose(),
                          shares.expected.colwise().sum().transpose());
-    axis = drawn_together(axis / std::exp(axis.array().log().mean()), kKeptOfAxes);
+    axis = drawn_together(axis / std::exp(axis.array().log().mean()), kept);
     const double change = std::max((marker.array() / model.marker.array() - 1.0).abs().maxCoeff(),
                                    (axis.array() / model.axis.array() - 1.0).abs().maxCoeff());
     model.marker = marker;

@@ -2,8 +2,10 @@
 
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
+#include <coxa/geom/cross_matrix.h>
 #include <coxa/geom/fits.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -67,8 +69,15 @@ std::vector<Index> finite_rows(const Points& p) {
   return rows;
 }
 
-void fit_pelvis(const MarkerData& markers, const Matched& pelvis, HipRecording& recording,
-                std::vector<std::string>& warnings) {
+// root mean square per axis, for a unit spread of the n markers of a rigid fit, of what a point at
+// `arm` from their mean moves by
+double carried_spread(const Vec3& arm, const Mat3& information, Index n) {
+  const Mat3 turn = cross_matrix(arm) * information.inverse() * cross_matrix(arm).transpose();
+  return std::sqrt(1.0 / static_cast<double>(n) + turn.trace() / 3.0);
+}
+
+void fit_pelvis(const MarkerData& markers, const Matched& pelvis, const Vec3& joint_centre,
+                HipRecording& recording, std::vector<std::string>& warnings) {
   const auto n = static_cast<std::size_t>(markers.n_frames());
   recording.X_LP.assign(n, RigidTransform{});
   std::vector<char> known(n, 0);
@@ -93,11 +102,13 @@ void fit_pelvis(const MarkerData& markers, const Matched& pelvis, HipRecording& 
   update_missing_poses(recording.X_LP, recording.pelvis_seen);
   recording.pelvis_residual_sd = std::sqrt(squares.sum() / std::max(1.0, freedom.sum()));
 
-  recording.n_pelvis = static_cast<Index>(pelvis.columns.size());
-  recording.pelvis_mean = pelvis.positions.colwise().mean();
-  const Points d = pelvis.positions.rowwise() - recording.pelvis_mean.transpose();
+  const Vec3 mean = pelvis.positions.colwise().mean();
+  const Points d = pelvis.positions.rowwise() - mean.transpose();
   const Mat3 second = d.transpose() * d;
   recording.pelvis_information = second.trace() * Mat3::Identity() - second;
+  recording.pelvis_centre_sd =
+      recording.pelvis_residual_sd *
+      carried_spread(joint_centre - mean, recording.pelvis_information, pelvis.positions.rows());
 }
 
 }  // namespace
@@ -110,7 +121,7 @@ HipRecording make_recording(const MarkerData& markers, const HipModel& model,
   HipRecording recording;
   const Matched pelvis = match(markers, model.pelvis_markers, "pelvis", warnings);
   const Matched thigh = match(markers, model.thigh_markers, "thigh", warnings);
-  fit_pelvis(markers, pelvis, recording, warnings);
+  fit_pelvis(markers, pelvis, model.joint_centre_pelvis, recording, warnings);
 
   const Index K = static_cast<Index>(thigh.columns.size());
   recording.thigh_labels = thigh.labels;

@@ -15,10 +15,9 @@ struct HipRecording {
   std::vector<RigidTransform> X_LP;  ///< per frame, model's pelvis frame in the laboratory
   std::vector<bool> pelvis_seen;     ///< per frame; false: pose taken from neighbouring frames
   double pelvis_residual_sd =
-      0.0;                  ///< mm per axis, spread of the pelvis markers about the rigid fit
-  Mat3 pelvis_information;  ///< sum of J^T J over the pelvis markers about their mean, mm²
-  Vec3 pelvis_mean = Vec3::Zero();  ///< mm, mean of the pelvis markers used, pelvis frame
-  Index n_pelvis = 0;
+      0.0;                        ///< mm per axis, spread of the pelvis markers about the rigid fit
+  Mat3 pelvis_information;        ///< sum of J^T J over the pelvis markers about their mean, mm²
+  double pelvis_centre_sd = 0.0;  ///< mm per axis, how far the spread moves the joint centre
   std::vector<std::string> thigh_labels;
   ThighObservations thigh;
 };

@@ -128,7 +128,8 @@ std::vector<HipAngles> pose_intervals(const HipRecording& recording, const HipMo
 
   // what is the same in every frame
   double marker = std::pow(options.measurement_sd, 2);
-  double shift = std::pow(options.joint_translation_sd, 2);
+  double shift =
+      std::pow(options.joint_translation_sd, 2) + std::pow(recording.pelvis_centre_sd, 2);
   if (!registration) {
     marker += std::pow(model.marker_sd, 2);
     shift += std::pow(model.pelvis_centre_sd, 2) + std::pow(model.femur_centre_sd, 2);

@@ -39,14 +39,15 @@ double turned_centre_variance(const ThighObservations& thigh, Index calibration_
 
 // `coxa` puts the marker positions right by the frame they were measured in; the others take them
 // as they are
-ErrorBudget update_registration(ThighObservations& thigh, const HipModel& model,
+ErrorBudget update_registration(HipRecording& recording, const HipModel& model,
                                 const TrackOptions& options) {
+  ThighObservations& thigh = recording.thigh;
+  const double moving = std::hypot(options.joint_translation_sd, recording.pelvis_centre_sd);
   const double centres = std::pow(model.pelvis_centre_sd, 2) + std::pow(model.femur_centre_sd, 2);
   const KnownErrors registration{.marker = std::hypot(model.marker_sd, options.measurement_sd),
                                  .shift = std::sqrt(centres)};
-  ErrorBudget budget{{.marker = registration.marker,
-                      .shift = std::hypot(options.joint_translation_sd, registration.shift)},
-                     {}};
+  ErrorBudget budget{
+      {.marker = registration.marker, .shift = std::hypot(moving, registration.shift)}, {}};
   if (options.method != PoseMethod::coxa || !model.calibration_frame || model.marker_sd == 0)
     return budget;
   const Index frame = *model.calibration_frame;
@@ -54,8 +55,7 @@ ErrorBudget update_registration(ThighObservations& thigh, const HipModel& model,
   if (!registered) return budget;
   thigh.x = registered->x;
   const double turned = turned_centre_variance(thigh, frame, model.pelvis_centre_sd);
-  return {{.marker = options.measurement_sd,
-           .shift = std::hypot(options.joint_translation_sd, std::sqrt(turned))},
+  return {{.marker = options.measurement_sd, .shift = std::hypot(moving, std::sqrt(turned))},
           registered->covariance};
 }
 
@@ -158,7 +158,7 @@ TrackResult track_in_detail(const MarkerData& markers, const HipModel& model,
   HipRecording recording = make_recording(markers, model, motion.warnings);
   monitor.progress("track", 0.2);
 
-  const ErrorBudget errors = update_registration(recording.thigh, model, options);
+  const ErrorBudget errors = update_registration(recording, model, options);
   const ArtefactModel artefact = estimate_artefact(recording.thigh, errors.known);
   PoseEstimate estimate = estimate_poses(recording.thigh, artefact, errors.known, options);
   update_unsolved_frames(estimate, motion.warnings);
