@@ -14,7 +14,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-X_AXES = {"a": "load P L²/EI", "b": "load q L³/EI", "c": "stretch", "i": "polar angle, degrees", "j": "twist, rad/mm",
+X_AXES = {"a": "load P L²/EI", "b": "load q L³/EI", "c": "stretch", "i": "polar angle, degrees", "j": "twist, rad/mm", "k": "time T = H k t / h²",
           "m": "strain / amplitude", "s": "slope, degrees", "n": "time step, s"}
 
 

@@ -29,6 +29,7 @@ Rows compressible_layer();    // g
 Rows incompressible_layer();  // h
 Rows ball_in_cup();           // i
 Rows torsion();               // j
+Rows biphasic();              // k
 Rows cook();                  // l
 Rows prony();                 // m
 Rows energy();                // n

@@ -36,6 +36,7 @@ const std::vector<Case>& cases() {
       {'h', "rigid sphere on a bonded nearly incompressible layer", incompressible_layer},
       {'i', "ball in a congruent cup", ball_in_cup},
       {'j', "twisted cylinder", torsion},
+      {'k', "biphasic cartilage, confined and unconfined", biphasic},
       {'l', "Cook's membrane", cook},
       {'m', "relaxation by a Prony series", prony},
       {'n', "energy and frequency of free vibration", energy},

@@ -53,14 +53,17 @@ ElementShape element_shape(const TetMesh& mesh, Index e) {
     // along coordinates 1 to 3, with coordinate 0 making up the sum of one
     const LocalGradient dN = local_gradient(n, L);
     const Eigen::Matrix<double, Eigen::Dynamic, 3> along = dN.rightCols<3>().colwise() - dN.col(0);
-    const Mat3 dX = X * along;
+    const Mat3 dX = X * along, inverse = dX.inverse();
     const double weight = dX.determinant() / 6.0 / static_cast<double>(points.size());
     if (!(weight > 0.0))
       fail(ErrorCode::bad_mesh, "element ", e, " has volume ",
            weight * static_cast<double>(points.size()), " mm3; it must be positive");
     shape.weight.push_back(weight);
-    const Eigen::Matrix<double, Eigen::Dynamic, 3> gradient = along * dX.inverse();
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> gradient = along * inverse;
     for (int a = 0; a < n; ++a) shape.gradient.push_back(gradient.row(a).transpose());
+    shape.barycentric.push_back(L);
+    shape.corner_gradient.push_back(-inverse.colwise().sum().transpose());
+    for (int a = 0; a < 3; ++a) shape.corner_gradient.push_back(inverse.row(a).transpose());
   }
   return shape;
 }

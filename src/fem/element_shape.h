@@ -10,6 +10,9 @@ namespace coxa::fem {
 struct ElementShape {
   std::vector<double> weight;  ///< n_points, mm³
   std::vector<Vec3> gradient;  ///< n_points × n_nodes, dN/dX, 1/mm
+  // of the four linear functions that are 1 at one corner
+  std::vector<Eigen::Vector4d> barycentric;  ///< n_points, their values
+  std::vector<Vec3> corner_gradient;         ///< n_points × 4, their slopes, 1/mm
 };
 
 /// Nodes of an element: 4, or 10 where the mesh has mid nodes.
