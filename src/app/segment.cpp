@@ -8,8 +8,8 @@ namespace {
 
 struct SegmentArguments {
   std::vector<std::string> images;
-  std::string series, side, landmarks, structures = "bones,cartilage", atlas, contrast, out;
-  double landmark_error = segment::SegmentOptions{}.landmark_error;
+  std::string series, side, landmarks, structures = "bones,cartilage", atlas, contrast, pins, out;
+  double landmark_error = segment::SegmentOptions{}.landmark_error, pin_weight = 1.0;
 };
 
 std::vector<std::string> structures_from(const std::string& list) {
@@ -40,6 +40,8 @@ void run_segment(const SegmentArguments& arguments, Context& context) {
   request.atlas = arguments.atlas.empty() ? pipeline::shipped_data("atlas/hip.coxa-atlas")
                                           : std::filesystem::path(arguments.atlas);
   request.options.structures = structures_from(arguments.structures);
+  request.pins = arguments.pins;
+  request.pin_weight = arguments.pin_weight;
   request.options.landmark_error = arguments.landmark_error;
   if (!arguments.contrast.empty()) request.options.contrast = arguments.contrast;
   const auto record = pipeline::run_segment_stage(request, arguments.out, pipeline::Reuse::never,
@@ -65,6 +67,13 @@ void add_segment(CLI::App& app, Context& context) {
   verb->add_option("--landmark-error", arguments->landmark_error,
                    "expected error of a landmark, mm")
       ->check(CLI::NonNegativeNumber);
+  verb->add_option("--pins", arguments->pins,
+                   "points that a structure's surface passes through, named femur-1, …; "
+                   ".mrk.json or CSV")
+      ->check(CLI::ExistingFile);
+  verb->add_option("--pin-weight", arguments->pin_weight,
+                   "how far of the way to its pins a surface goes")
+      ->check(CLI::Range(0.0, 1.0));
   verb->add_option("--structures", arguments->structures,
                    "bones, cartilage, all, or names, separated by commas");
   verb->add_option("--contrast", arguments->contrast,

@@ -41,7 +41,7 @@ class Run {
         return run_surface_stage({subject_.surfaces, subject_.side}, out_ / "segment", reuse,
                                  monitor);
       const SegmentRequest request{
-          subject_.images, subject_.side, subject_.landmarks, subject_.atlas, {}};
+          subject_.images, subject_.side, subject_.landmarks, subject_.atlas, {}, subject_.pins};
       return run_segment_stage(request, out_ / "segment", reuse, monitor);
     });
     add(1, [&](Reuse reuse, const Monitor& monitor) {

@@ -10,6 +10,7 @@
 #include <coxa/io/volumes.h>
 #include <coxa/measure/thickness.h>
 #include <coxa/pipeline/label_map.h>
+#include <coxa/segment/pins.h>
 
 namespace coxa::pipeline {
 namespace fs = std::filesystem;
@@ -17,6 +18,10 @@ namespace {
 
 constexpr const char* kStructures[] = {"femur", "hip_bone", "femoral_cartilage",
                                        "acetabular_cartilage"};
+// what lies on what
+const std::map<std::string, std::string> kHosts{{"femoral_cartilage", "femur"},
+                                                {"acetabular_cartilage", "hip_bone"}};
+constexpr double kPinKept = 0.3;  // mm, beyond which a pin counts as missed
 // slices thicker than this leave a layer of cartilage unresolved; an adult protocol has 3 mm or
 // less
 constexpr double kThickSlice = 4.0;
@@ -75,6 +80,14 @@ Record wanted_record(const SegmentRequest& request) {
   return record;
 }
 
+/// The record of the same with pins.
+Record with_pins(Record record, const SegmentRequest& request) {
+  if (request.pins.empty()) return record;
+  record.inputs["pins"] = io::sha256_of_path(request.pins);
+  record.options["pin_weight"] = request.pin_weight;
+  return record;
+}
+
 void add_figures(const segment::SegmentResult& result, Record& record) {
   record.figures["quality"] = result.quality;
   for (const auto& [name, q] : result.structures) {
@@ -100,6 +113,68 @@ void warn_of_thick_slices(const Volume& image, Record& record, const Monitor& mo
   monitor.warn(record.warnings.back());
 }
 
+shape::Landmarks landmarks_of(const SegmentRequest& request) {
+  return request.landmarks.empty() ? shape::Landmarks{} : io::read_landmarks(request.landmarks);
+}
+
+std::vector<Volume> read_images(const SegmentRequest& request, const Monitor& monitor) {
+  const shape::Landmarks landmarks = landmarks_of(request);
+  std::vector<Volume> images;
+  for (const ImageEntry& entry : request.images)
+    images.push_back(read_image(entry, landmarks, monitor));
+  return images;
+}
+
+/// Searches the images; figures and warnings go into the record.
+SurfaceSet found_in_image(const SegmentRequest& request, const std::vector<Volume>& images,
+                          Record& record, const Monitor& monitor) {
+  for (const Volume& image : images) warn_of_thick_slices(image, record, monitor);
+  segment::SegmentResult result =
+      segment::segment(images, io::read_atlas(request.atlas), request.side, landmarks_of(request),
+                       request.options, monitor);
+  add_figures(result, record);
+  record.warnings.insert(record.warnings.end(), result.warnings.begin(), result.warnings.end());
+  return std::move(result.surfaces);
+}
+
+/// Where an earlier result holds the surfaces without pins, of the same images, landmarks, atlas
+/// and options; empty: nowhere.
+fs::path kept_without_pins(const fs::path& earlier, const Record& wanted, Reuse reuse) {
+  for (const fs::path& place : {earlier, earlier / "found"}) {
+    if (reuse == Reuse::if_unchanged && holds_result(place, wanted)) return place;
+  }
+  return {};
+}
+
+void write_found(const fs::path& found, const SurfaceSet& surfaces, const Record& record) {
+  for (const auto& [name, surface] : surfaces) io::write_surface(found / (name + ".vtp"), surface);
+  write_record(found / "segment.json", record);
+}
+
+std::vector<segment::Pin> read_pins(const SegmentRequest& request) {
+  std::vector<segment::Pin> pins;
+  if (request.pins.empty()) return pins;
+  for (const auto& [name, place] : io::read_landmarks(request.pins)) {
+    const std::size_t dash = name.rfind('-');
+    require(dash != std::string::npos && dash > 0, request.pins.string(), ": a pin is named ",
+            "<structure>-<number>, as femur-1; got ", name);
+    pins.push_back({name, name.substr(0, dash), place, request.pin_weight});
+  }
+  return pins;
+}
+
+void set_pins(const std::vector<segment::Pin>& pins, double gap, SurfaceSet& surfaces,
+              Record& record, const Monitor& monitor) {
+  const auto left = segment::update_pinned(surfaces, pins, kHosts, gap);
+  for (const auto& [name, distance] : left) {
+    record.figures["pin_" + name + "_distance_mm"] = distance;
+    if (distance <= kPinKept) continue;
+    record.warnings.push_back(join_text("the surface passes pin ", name, " at ", distance,
+                                        " mm: others nearby ask for something else"));
+    monitor.warn(record.warnings.back());
+  }
+}
+
 }  // namespace
 
 Volume read_image(const ImageEntry& entry, const shape::Landmarks& landmarks,
@@ -111,32 +186,33 @@ Volume read_image(const ImageEntry& entry, const shape::Landmarks& landmarks,
 
 Record run_segment_stage(const SegmentRequest& request, const fs::path& folder, Reuse reuse,
                          const Monitor& monitor) {
+  const Record as_found = wanted_record(request);
   const auto body = [&](const fs::path& partial, Record& record) {
-    const shape::Landmarks landmarks =
-        request.landmarks.empty() ? shape::Landmarks{} : io::read_landmarks(request.landmarks);
-    std::vector<Volume> images;
-    for (const ImageEntry& entry : request.images) {
-      images.push_back(read_image(entry, landmarks, monitor));
-      warn_of_thick_slices(images.back(), record, monitor);
+    const std::vector<segment::Pin> pins = read_pins(request);
+    const std::vector<Volume> images = read_images(request, monitor);
+    const fs::path kept = kept_without_pins(folder, as_found, reuse);
+    Record found = kept.empty() ? as_found : read_record(kept / "segment.json");
+    SurfaceSet surfaces = kept.empty() ? found_in_image(request, images, found,
+                                                        part_of(monitor, "segment", 0.0, 0.95))
+                                       : read_surfaces(kept);
+    record.figures = found.figures;
+    record.warnings = found.warnings;
+    if (!pins.empty()) {
+      write_found(partial / "found", surfaces, found);
+      set_pins(pins, request.options.minimum_gap, surfaces, record, monitor);
     }
-    segment::SegmentResult result =
-        segment::segment(images, io::read_atlas(request.atlas), request.side, landmarks,
-                         request.options, part_of(monitor, "segment", 0.0, 0.95));
-    add_thickness(result.surfaces);
-    for (const auto& [name, surface] : result.surfaces) {
+    add_thickness(surfaces);
+    for (const auto& [name, surface] : surfaces) {
       io::write_surface(partial / (name + ".vtp"), surface);
       io::write_surface(partial / (name + ".ply"), surface);
     }
-    io::write_labels(partial / "labels.nii.gz", make_label_map(images.front(), result.surfaces));
-    add_figures(result, record);
-    record.warnings.insert(record.warnings.end(), result.warnings.begin(), result.warnings.end());
+    io::write_labels(partial / "labels.nii.gz", make_label_map(images.front(), surfaces));
   };
-  return run_stage(folder, wanted_record(request), reuse, monitor, body);
+  return run_stage(folder, with_pins(as_found, request), reuse, monitor, body);
 }
 
 void add_thickness(SurfaceSet& surfaces) {
-  for (const auto& [cartilage, bone] :
-       {std::pair{"femoral_cartilage", "femur"}, {"acetabular_cartilage", "hip_bone"}}) {
+  for (const auto& [cartilage, bone] : kHosts) {
     if (!surfaces.count(cartilage) || !surfaces.count(bone)) continue;
     surfaces[bone].fields["cartilage_thickness_mm"] =
         measure::closed_cartilage_thickness(surfaces[bone].mesh, surfaces[cartilage].mesh);

@@ -28,16 +28,6 @@ class RemoveOnExit {
   fs::path folder_;
 };
 
-bool holds_result(const fs::path& folder, const Record& wanted) {
-  const fs::path file = folder / (wanted.verb + ".json");
-  if (!fs::exists(file)) return false;
-  try {
-    return record_key(read_record(file)) == record_key(wanted);
-  } catch (const Error&) {
-    return false;  // a broken record is no ground for keeping a result
-  }
-}
-
 void make_empty_folder(const fs::path& folder) {
   std::error_code error;
   fs::remove_all(folder, error);
@@ -81,6 +71,16 @@ void move_files(const fs::path& partial, const fs::path& folder) {
 }
 
 }  // namespace
+
+bool holds_result(const fs::path& folder, const Record& wanted) {
+  const fs::path file = folder / (wanted.verb + ".json");
+  if (!fs::exists(file)) return false;
+  try {
+    return record_key(read_record(file)) == record_key(wanted);
+  } catch (const Error&) {
+    return false;  // a broken record is no ground for keeping a result
+  }
+}
 
 Record run_stage(const fs::path& folder, Record wanted, Reuse reuse, const Monitor& monitor,
                  const std::function<void(const fs::path&, Record&)>& body) {

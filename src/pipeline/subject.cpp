@@ -167,6 +167,10 @@ Subject read_subject(const fs::path& path) {
     subject.landmarks = existing(*table, "path", table->find_path("path"));
     table->finish();
   }
+  if (const auto table = root.find_table("pins")) {
+    subject.pins = existing(*table, "path", table->find_path("path"));
+    table->finish();
+  }
   subject.atlas = shipped_data("atlas/hip.coxa-atlas");
   if (const auto table = root.find_table("atlas")) {
     subject.atlas = existing(*table, "path", table->find_path("path"));

@@ -46,6 +46,12 @@ TEST_F(SubjectFile, GivesItsValuesAndDefaults) {
   EXPECT_DOUBLE_EQ(s.joint.poisson_ratio, 0.42);
   EXPECT_EQ(s.joint.loading, Loading::joint_force);
 }
+TEST_F(SubjectFile, NamesItsPins) {
+  EXPECT_EQ(read(good_).pins, fs::path());
+  EXPECT_EQ(read(good_ + "[pins]\npath = \"places.mrk.json\"\n").pins, folder_ / "places.mrk.json");
+  EXPECT_NE(error_of(good_ + "[pins]\npath = \"none.mrk.json\"\n").find("there is no"),
+            std::string::npos);
+}
 TEST_F(SubjectFile, NamesTheNearestKeyOfAMisspeltOne) {
   EXPECT_NE(error_of(good_ + "[joint]\nforce_n = 800\n").find("did you mean force_N?"),
             std::string::npos);

@@ -18,10 +18,15 @@ struct SegmentRequest {
   std::filesystem::path landmarks;  ///< empty: none
   std::filesystem::path atlas;
   segment::SegmentOptions options;
+  std::filesystem::path pins = {};  ///< points named `<structure>-<n>`; empty: none
+  double pin_weight = 1.0;          ///< of each, see segment::Pin
 };
 
 /// Segments the images into `folder`: one VTP and PLY per structure, `labels.nii.gz` with
 /// `labels.json`, `thickness` fields on the cartilages, and the record `segment.json`.
+///
+/// With pins the surfaces as found in the image are kept in `folder/found`: other pins are set on
+/// these, without another search.
 Record run_segment_stage(const SegmentRequest& request, const std::filesystem::path& folder,
                          Reuse reuse, const Monitor& monitor);
 

@@ -10,6 +10,9 @@ namespace coxa::pipeline {
 
 enum class Reuse { if_unchanged, never };
 
+/// Whether `folder` holds a result whose record has the same key.
+bool holds_result(const std::filesystem::path& folder, const Record& wanted);
+
 /// Runs one stage into `folder`, whole or not at all.
 ///
 /// The body fills a sibling folder `<name>.partial`, which is renamed into place at the end, with

@@ -57,6 +57,7 @@ struct Subject {
   std::map<std::string, std::filesystem::path>
       surfaces;                     ///< by structure, in place of images: a hip segmented elsewhere
   std::filesystem::path landmarks;  ///< `.mrk.json` or CSV
+  std::filesystem::path pins;       ///< likewise; points named `<structure>-<n>`
   std::filesystem::path atlas;      ///< the shipped one where the file names none
   MotionEntry motion;
   MeshEntry mesh;
