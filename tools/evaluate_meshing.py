@@ -27,7 +27,7 @@ PAPER = {"tets": (20000, None, -1), "aspect_mean": (0.72, 0.77, 1), "aspect_p05"
 MECHANICS = {**PAPER, "tets": (90000, None, -1), "aspect_mean": (0.70, None, 1), "aspect_p05": (0.50, None, 1),
              "aspect_min": (0.15, None, 1), "seconds": (15, None, -1), "megabytes": (1000, None, -1)}
 # bodies of any size: no limit of elements or time
-BODY = {**PAPER, "tets": (200000, None, -1), "seconds": (60, None, -1), "megabytes": (1000, None, -1)}
+BODY = {**PAPER, "tets": (300000, None, -1), "seconds": (60, None, -1), "megabytes": (1000, None, -1)}
 FORMATS = {"tets": "6.0f", "inverted": "3.0f", "manifold": "3.0f", "dihedral_min": "6.1f", "dihedral_max": "6.1f", "seconds": "5.1f",
            "megabytes": "5.0f"}
 
@@ -101,8 +101,9 @@ def figures_of(judge, mesh, surface, repaired):
     truth = judge.read_surface(str(surface))
     volumes, dihedral, aspect = judge.quality(points, tets)
     facets = judge.boundary(tets)
-    edges = np.sort(np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]]), axis=1)
-    counts = np.unique(edges, axis=0, return_counts=True)[1]
+    ways = np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]])
+    counts = np.unique(np.sort(ways, axis=1), axis=0, return_counts=True)[1]
+    oriented = len(np.unique(ways, axis=0)) == len(ways)
     envelope = judge.to_polydata(points, facets)
     of_truth = judge.samples(truth)
     there = judge.distances(outside(of_truth, envelope) if repaired else of_truth, envelope)
@@ -110,7 +111,7 @@ def figures_of(judge, mesh, surface, repaired):
     return {"tets": len(tets), "aspect_mean": aspect.mean(), "aspect_p05": np.percentile(aspect, 5), "aspect_min": aspect.min(),
             "dihedral_min": dihedral.min(), "dihedral_max": dihedral.max(), "inverted": (volumes <= 0).sum(),
             "envelope_rms": np.sqrt(np.mean(np.concatenate([there, back]) ** 2)), "envelope_max": max(there.max(), back.max()),
-            "manifold": int((counts == 2).all())}
+            "manifold": int((counts == 2).all() and oriented)}
 
 
 def missed(figures, limits, which):

@@ -173,6 +173,14 @@ double median_thickness(const VecX& areas, const std::vector<Opposite>& opposite
   return 0.0;
 }
 
+bool may_be_partner(const Opposite& o, double reach) {
+  return o.triangle >= 0 && o.facing > kFacing && o.distance <= reach;
+}
+
+double relative_thickness(double thickness, const VecX& areas) {
+  return thickness / std::sqrt(0.5 * areas.sum());
+}
+
 struct Pairing {
   const VecX& x;  // the signed mode
   const std::vector<Opposite>& opposites;
@@ -180,8 +188,7 @@ struct Pairing {
 
   bool has_partner(Index t) const {
     const Opposite& o = opposites[static_cast<std::size_t>(t)];
-    return o.triangle >= 0 && o.facing > kFacing && o.distance <= reach &&
-           (x[t] > 0) != (x[o.triangle] > 0);
+    return may_be_partner(o, reach) && (x[t] > 0) != (x[o.triangle] > 0);
   }
 };
 
@@ -243,7 +250,7 @@ SurfaceSides split_sides(const TriMesh& surface) {
   const Pairing pairing{x, opposites, kReach * thickness};
 
   SurfaceSides sides;
-  sides.relative_thickness = thickness / std::sqrt(0.5 * g.areas.sum());
+  sides.relative_thickness = relative_thickness(thickness, g.areas);
   sides.labels.resize(opposites.size());
   sides.thickness.resize(surface.n_triangles());
   double paired = 0.0;
@@ -258,6 +265,18 @@ SurfaceSides split_sides(const TriMesh& surface) {
   absorb_islands(edges, g.areas, sides.labels, SideLabel::second);
   grow_rim(edges, pairing, sides.labels);
   return sides;
+}
+
+FacingBound facing_bound(const TriMesh& surface) {
+  require_closed_manifold(surface, "surface to split into two faces");
+  const Geometry g = triangle_geometry(surface);
+  const std::vector<Opposite> opposites = find_opposites(surface, g);
+  const double thickness = median_thickness(g.areas, opposites);
+  double facing = 0.0;
+  for (Index t = 0; t < surface.n_triangles(); ++t)
+    if (may_be_partner(opposites[static_cast<std::size_t>(t)], kReach * thickness))
+      facing += g.areas[t];
+  return {facing / g.areas.sum(), relative_thickness(thickness, g.areas)};
 }
 
 }  // namespace coxa::medial

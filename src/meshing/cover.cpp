@@ -259,25 +259,28 @@ Index cover_far_places(TetGrid& grid, const TriMesh& surface, const CoverOptions
   return drawn;
 }
 
-double envelope_error(const TetGrid& grid, const TriMesh& surface) {
-  double farthest = 0.0;
-  for (const Place& place : places_of(grid, surface)) farthest = std::max(farthest, place.distance);
+std::vector<Miss> misses(const TetGrid& grid, const TriMesh& surface) {
+  std::vector<Miss> found;
+  for (const Place& place : places_of(grid, surface)) found.push_back({place.p, place.distance});
   const TriangleTree tree(surface.points, surface.triangles);
   const Triangles facets = boundary_of(grid);
-  const auto largest = [](double a, double b) { return std::max(a, b); };
-  const double back = parallel_reduce(
-      facets.rows(), 0.0,
-      [&](Index f) {
-        const Vec3 &a = grid.x[at(facets(f, 0))], &b = grid.x[at(facets(f, 1))],
-                   &c = grid.x[at(facets(f, 2))];
-        double far = 0.0;
-        for (const Vec3& p : {Vec3((a + b + c) / 3.0), Vec3(0.5 * (a + b)), Vec3(0.5 * (b + c)),
-                              Vec3(0.5 * (c + a))})
-          far = std::max(far, tree.nearest(p).squared_distance);
-        return far;
-      },
-      largest);
-  return std::max(farthest, std::sqrt(back));
+  const std::size_t first = found.size();
+  found.resize(first + 4 * at(facets.rows()));
+  parallel_for(facets.rows(), [&](Index f) {
+    const Vec3 &a = grid.x[at(facets(f, 0))], &b = grid.x[at(facets(f, 1))],
+               &c = grid.x[at(facets(f, 2))];
+    std::size_t next = first + 4 * at(f);
+    for (const Vec3& p :
+         {Vec3((a + b + c) / 3.0), Vec3(0.5 * (a + b)), Vec3(0.5 * (b + c)), Vec3(0.5 * (c + a))})
+      found[next++] = {p, std::sqrt(tree.nearest(p).squared_distance)};
+  });
+  return found;
+}
+
+double envelope_error(const TetGrid& grid, const TriMesh& surface) {
+  double farthest = 0.0;
+  for (const Miss& miss : misses(grid, surface)) farthest = std::max(farthest, miss.distance);
+  return farthest;
 }
 
 }  // namespace coxa::meshing

@@ -1,5 +1,6 @@
 #include <coxa/meshing/mesh_surface.h>
 
+#include "limits.h"
 #include "mid_nodes.h"
 #include "sheet_mesh.h"
 #include "solid_mesh.h"
@@ -29,25 +30,27 @@ void check(const MeshingOptions& o) {
   require(o.improvement_rounds >= 0, "improvement_rounds must be >= 0, got ", o.improvement_rounds);
 }
 
-SheetLikeness likeness_of(const medial::SurfaceSides& sides) {
-  SheetLikeness result{sides.sheetness, sides.relative_thickness, ""};
-  if (sides.sheetness < kSheet || sides.relative_thickness > kThick)
-    result.why_not = join_text("the body is no sheet: ", 100.0 * sides.sheetness,
+SheetLikeness likeness_of(double sheetness, double relative_thickness) {
+  SheetLikeness result{sheetness, relative_thickness, ""};
+  if (sheetness < kSheet || relative_thickness > kThick)
+    result.why_not = join_text("the body is no sheet: ", 100.0 * sheetness,
                                " % of its surface faces another part of it, at ",
-                               sides.relative_thickness, " times the width of a face");
+                               relative_thickness, " times the width of a face");
   return result;
 }
 
-int limits_missed(const MeshingReport& report) {
-  const TetQuality& q = report.quality;
-  return (q.aspect_mean < 0.72) + (q.aspect_p05 < 0.5) + (q.aspect_min < 0.15) +
-         (q.dihedral_min < radians(10.0)) + (q.dihedral_max > radians(165.0)) +
-         (report.envelope > 0.3);
-}
+struct Sheet {
+  SheetLikeness likeness;
+  medial::SurfaceSides sides;  // empty where the bound says that the body is no sheet
+};
 
-bool nearer_to_limits(const MeshingReport& a, const MeshingReport& b) {
-  const int missed_a = limits_missed(a), missed_b = limits_missed(b);
-  return missed_a < missed_b || (missed_a == missed_b && a.envelope < b.envelope);
+Sheet sheet_of(const TriMesh& surface) {
+  const medial::FacingBound bound = medial::facing_bound(surface);
+  Sheet sheet{likeness_of(bound.sheetness, bound.relative_thickness), {}};
+  if (!sheet.likeness.is_sheet()) return sheet;
+  sheet.sides = medial::split_sides(surface);
+  sheet.likeness = likeness_of(sheet.sides.sheetness, sheet.sides.relative_thickness);
+  return sheet;
 }
 
 MeshingResult solid_because(const std::string& why, const SheetLikeness& likeness,
@@ -64,8 +67,7 @@ MeshingResult solid_because(const std::string& why, const SheetLikeness& likenes
 MeshingResult straight_mesh(const TriMesh& surface, const MeshingOptions& options,
                             const Monitor& monitor) {
   if (options.method == Method::lattice) return mesh_solid(surface, options, monitor);
-  const medial::SurfaceSides sides = medial::split_sides(surface);
-  const SheetLikeness likeness = likeness_of(sides);
+  const auto [likeness, sides] = sheet_of(surface);
   const bool may_choose = options.method == Method::automatic;
   if (!likeness.is_sheet()) {
     if (!may_choose) fail(ErrorCode::bad_mesh, likeness.why_not);
@@ -101,11 +103,9 @@ void add_mid_nodes(const TriMesh& surface, MeshingResult& result) {
 
 }  // namespace
 
-bool meets_limits(const MeshingReport& report) { return limits_missed(report) == 0; }
-
 SheetLikeness sheet_likeness(const TriMesh& surface) {
   require_closed_manifold(surface, "surface to fill with tetrahedra");
-  return likeness_of(medial::split_sides(surface));
+  return sheet_of(surface).likeness;
 }
 
 MeshingResult mesh_surface(const TriMesh& surface, const MeshingOptions& options,

@@ -84,16 +84,33 @@ bool is_flat(const std::vector<Polygon>& pieces, double flatness) {
   return high - low <= 2.0 * flatness;
 }
 
+bool is_inside(const Vec3& p, const Box& box) {
+  return (p.array() >= box.low.array()).all() && (p.array() <= box.high.array()).all();
+}
+
+constexpr int kMostLevels = 16;
+// a cube this much larger than asked for is small enough: halving is not exact
+constexpr double kAsSmall = 1.0 + 1e-9;
+
+// what a cube must look at
+struct Share {
+  Index cell = 0;
+  std::vector<Index> triangles;
+  std::vector<FinePlace> fine_places;
+};
+
 }  // namespace
 
 Octree::Octree(const TriMesh& surface, const OctreeOptions& options) {
   const Bounds box = bounds(surface.points);
-  constexpr int kMostLevels = 16;
   const double wanted = 1.1 * (box.high - box.low).maxCoeff();
   int levels = 2;
   while (levels < kMostLevels && std::ldexp(options.smallest, levels) < wanted) ++levels;
   // the root is larger than needed, so that the finest cubes are as small as asked for
   const double edge = std::max(wanted, std::ldexp(options.smallest, levels));
+  double finest = options.smallest;
+  for (const FinePlace& place : options.fine_places) finest = std::min(finest, place.size);
+  while (levels < kMostLevels && std::ldexp(edge, -levels) > kAsSmall * finest) ++levels;
   OctreeCell root;
   root.size = 2 << levels;
   unit_ = edge / root.size;
@@ -128,31 +145,44 @@ void Octree::split(Index cell) {
   }
 }
 
+double Octree::size_at(const Vec3& p) const {
+  GridPoint q{};
+  for (int k = 0; k < 3; ++k)
+    q[static_cast<std::size_t>(k)] = static_cast<int>(std::floor((p[k] - origin_[k]) / unit_));
+  const OctreeCell* leaf = leaf_at(q);
+  return unit_ * (leaf != nullptr ? leaf->size : cells_[0].size);
+}
+
 void Octree::refine(const TriMesh& surface, const OctreeOptions& options) {
   constexpr double kMargin = 0.1;  // of the edge: a cube looks a little over its border
   std::vector<Index> all(at(surface.n_triangles()));
   std::iota(all.begin(), all.end(), 0);
-  std::vector<std::pair<Index, std::vector<Index>>> open{{0, std::move(all)}};
+  std::vector<Share> open{{0, std::move(all), options.fine_places}};
   while (!open.empty()) {
-    const auto [number, triangles] = std::move(open.back());
+    const Share share = std::move(open.back());
     open.pop_back();
-    const OctreeCell cell = cells_[at(number)];
+    const OctreeCell cell = cells_[at(share.cell)];
     const double edge = unit_ * cell.size;
     const Vec3 low = position(cell.low), margin = Vec3::Constant(kMargin * edge);
     const Box box{low - margin, low + Vec3::Constant(edge) + margin};
-    std::vector<Index> inside;
+    Share inside;
     std::vector<Polygon> pieces;
-    for (const Index t : triangles) {
+    for (const Index t : share.triangles) {
       Polygon piece = part_inside(surface, t, box);
       if (piece.empty()) continue;
-      inside.push_back(t);
+      inside.triangles.push_back(t);
       pieces.push_back(std::move(piece));
     }
-    if (inside.empty() || cell.size <= 2) continue;
-    if (edge <= options.largest && is_flat(pieces, options.flatness)) continue;
-    split(number);
-    const Index first = cells_[at(number)].children;
-    for (Index k = 0; k < 8; ++k) open.emplace_back(first + k, inside);
+    for (const FinePlace& place : share.fine_places)
+      if (edge > kAsSmall * place.size && is_inside(place.p, box))
+        inside.fine_places.push_back(place);
+    if (cell.size <= 2 || (pieces.empty() && inside.fine_places.empty())) continue;
+    const bool fine_enough = edge <= kAsSmall * options.smallest ||
+                             (edge <= options.largest && is_flat(pieces, options.flatness));
+    if (inside.fine_places.empty() && fine_enough) continue;
+    split(share.cell);
+    inside.cell = cells_[at(share.cell)].children;
+    for (int k = 0; k < 8; ++k, ++inside.cell) open.push_back(inside);
   }
 }
 

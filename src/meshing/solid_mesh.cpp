@@ -3,6 +3,7 @@
 #include "cover.h"
 #include "flips.h"
 #include "lattice.h"
+#include "limits.h"
 #include "mending.h"
 #include "node_freedom.h"
 #include "node_smoothing.h"
@@ -15,6 +16,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace coxa::meshing {
 namespace {
@@ -25,21 +28,37 @@ constexpr double kSmallest = 2.0;      // times the flatness: edge of the smalle
 constexpr double kLargest = 0.08;      // of the diagonal: edge of the largest cubes at the surface
 constexpr double kCoarser = 1.3;       // growth of the flatness when elements are too many
 constexpr int kSizeTries = 24;
-constexpr int kMostTets = 200000;
+constexpr int kMostTets = 200000;       // at first
+constexpr int kMostFinerTets = 300000;  // where finer cubes are needed to meet the surface
 
-// lattice within the surface of as many elements as allowed
-TetGrid fill_within(const TriMesh& surface, const TriangleTree& tree, int max_tets,
-                    double& flatness, const Monitor& monitor) {
-  const double diagonal = bounds(surface.points).diagonal();
-  flatness = std::min(kFlatness, kShapeShare * diagonal);
+// A lattice within the surface and the cubes it comes from.
+struct Filling {
+  Octree octree;
+  TetGrid grid;
+};
+
+Filling fill(const TriMesh& surface, const TriangleTree& tree, const OctreeOptions& cubes) {
+  Octree octree(surface, cubes);
+  TetGrid grid = stuffed(make_lattice(octree), tree);
+  return {std::move(octree), std::move(grid)};
+}
+
+OctreeOptions cubes_for(const TriMesh& surface, double flatness) {
+  return {.flatness = flatness,
+          .smallest = kSmallest * flatness,
+          .largest = std::max(kLargest * bounds(surface.points).diagonal(), 4.0 * flatness)};
+}
+
+// lattice of as many elements as allowed
+Filling fill_within(const TriMesh& surface, const TriangleTree& tree, int max_tets,
+                    OctreeOptions& cubes, const Monitor& monitor) {
+  double flatness = std::min(kFlatness, kShapeShare * bounds(surface.points).diagonal());
   for (int attempt = 0; attempt < kSizeTries; ++attempt) {
     monitor.check_cancelled();
-    const Octree octree(surface, {.flatness = flatness,
-                                  .smallest = kSmallest * flatness,
-                                  .largest = std::max(kLargest * diagonal, 4.0 * flatness)});
-    TetGrid grid = stuffed(make_lattice(octree), tree);
-    const double filled = static_cast<double>(grid.tets.size()) / max_tets;
-    if (filled > 0.0 && filled <= 1.0) return grid;
+    cubes = cubes_for(surface, flatness);
+    Filling made = fill(surface, tree, cubes);
+    const double filled = static_cast<double>(made.grid.tets.size()) / max_tets;
+    if (filled > 0.0 && filled <= 1.0) return made;
     // half the way that a smooth surface would need: cubes change by factors of two
     flatness *= filled > 0.0 ? std::max(kCoarser, std::sqrt(filled)) : 0.5;
   }
@@ -71,7 +90,8 @@ void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface,
   constexpr int kCoverRounds = 3;
   const auto flip = [&](double below) {
     if (connections == Connections::may_change)
-      flip_poor(grid, guide, {.below = below, .max_tets = options.max_tets.value_or(kMostTets)});
+      flip_poor(grid, guide,
+                {.below = below, .max_tets = options.max_tets.value_or(kMostFinerTets)});
   };
   for (int k = 0; k < rounds; ++k) {
     monitor.check_cancelled();
@@ -82,7 +102,7 @@ void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface,
   }
   const auto room = [&]() -> std::ptrdiff_t {
     return connections == Connections::may_change
-               ? options.max_tets.value_or(kMostTets) - grid.n_living()
+               ? options.max_tets.value_or(kMostFinerTets) - grid.n_living()
                : 0;
   };
   for (int k = 0; k < kCoverRounds && cover_far_places(grid, surface, {.room = room()}) > 0; ++k) {
@@ -115,36 +135,82 @@ void add_notes(const TriMesh& surface, double flatness, MeshingReport& report) {
                   " % of the body is filled: it is thinner than the elements allowed"));
 }
 
+MeshingResult result_of(TetGrid& grid, const std::vector<Miss>& missed) {
+  MeshingResult result;
+  result.report.method = Method::lattice;
+  for (const Miss& miss : missed)
+    result.report.envelope = std::max(result.report.envelope, miss.distance);
+  result.mesh = to_tet_mesh(grid);
+  std::fill(result.mesh.facet_tags.begin(), result.mesh.facet_tags.end(), FacetTag::untagged);
+  result.report.quality = tet_quality(result.mesh.points, result.mesh.tets);
+  return result;
+}
+
+// the lattice made good; what of the surface it misses is told
+MeshingResult improved(TetGrid grid, const SlideGuide& guide, const TriMesh& surface,
+                       const MeshingOptions& options, std::vector<Miss>& missed,
+                       const Monitor& monitor) {
+  draw_to_surface(grid, guide);
+  const TetGrid start = grid;
+  improve(grid, guide, surface, options, Connections::may_change, monitor);
+  Index dropped = drop_poor_elements(grid);
+  if (!pinched_nodes(grid).empty()) {
+    // where thin parts fold over themselves changed connections may touch: keep the lattice's
+    grid = start;
+    improve(grid, guide, surface, options, Connections::stay, monitor);
+    dropped = 0;
+  }
+  missed = misses(grid, surface);
+  MeshingResult result = result_of(grid, missed);
+  if (dropped > 0)
+    result.report.notes.push_back(
+        join_text(dropped, " poor elements at the boundary were dropped"));
+  return result;
+}
+
+// half as large cubes where the surface was missed; returns whether there are such places
+bool update_fine_places(const std::vector<Miss>& missed, const Octree& octree,
+                        OctreeOptions& cubes) {
+  constexpr double kMissed = 0.2, kMuchMissed = 0.25;  // mm
+  const bool any = std::any_of(missed.begin(), missed.end(),
+                               [](const Miss& m) { return m.distance > kMuchMissed; });
+  for (const Miss& miss : missed)
+    if (any && miss.distance > kMissed)
+      cubes.fine_places.push_back({miss.p, 0.5 * octree.size_at(miss.p)});
+  return any;
+}
+
 }  // namespace
 
 MeshingResult mesh_solid(const TriMesh& surface, const MeshingOptions& options,
                          const Monitor& monitor) {
-  MeshingResult result;
+  constexpr int kFinerRounds = 3, kCoarserTries = 2;
   const TriangleTree tree(surface.points, surface.triangles);
   const SolidGuide guide(tree);
-  double flatness = 0.0;
-  TetGrid grid = fill_within(surface, tree, options.max_tets.value_or(kMostTets), flatness,
-                             part_of(monitor, "lattice", 0.0, 0.4));
-  draw_to_surface(grid, guide);
-  const TetGrid start = grid;
-  const Monitor rest = part_of(monitor, "improve", 0.4, 1.0);
-  improve(grid, guide, surface, options, Connections::may_change, rest);
-  const Index dropped = drop_poor_elements(grid);
-  if (!pinched_nodes(grid).empty()) {
-    // where thin parts fold over themselves changed connections may touch: keep the lattice's
-    grid = start;
-    improve(grid, guide, surface, options, Connections::stay, rest);
-  } else if (dropped > 0) {
-    result.report.notes.push_back(
-        join_text(dropped, " poor elements at the boundary were dropped"));
+  const int max_tets = options.max_tets.value_or(kMostTets);
+  const int max_finer = options.max_tets.value_or(kMostFinerTets);
+  OctreeOptions cubes;
+  Filling filling =
+      fill_within(surface, tree, max_tets, cubes, part_of(monitor, "lattice", 0.0, 0.4));
+  std::vector<Miss> missed;
+  MeshingResult best = improved(std::move(filling.grid), guide, surface, options, missed,
+                                part_of(monitor, "improve", 0.4, 0.7));
+  for (int round = 0; round < kFinerRounds && update_fine_places(missed, filling.octree, cubes);
+       ++round) {
+    filling = fill(surface, tree, cubes);
+    // room for finer cubes is made where the surface is met well
+    for (int k = 0; k < kCoarserTries && std::ssize(filling.grid.tets) > max_finer; ++k) {
+      cubes.flatness *= kCoarser;
+      filling = fill(surface, tree, cubes);
+    }
+    if (std::ssize(filling.grid.tets) > max_finer) break;
+    MeshingResult finer =
+        improved(std::move(filling.grid), guide, surface, options, missed,
+                 part_of(monitor, "refine", 0.7 + 0.1 * round, 0.8 + 0.1 * round));
+    if (nearer_to_limits(finer.report, best.report)) best = std::move(finer);
   }
-  result.report.method = Method::lattice;
-  result.report.envelope = envelope_error(grid, surface);
-  result.mesh = to_tet_mesh(grid);
-  std::fill(result.mesh.facet_tags.begin(), result.mesh.facet_tags.end(), FacetTag::untagged);
-  result.report.quality = tet_quality(result.mesh.points, result.mesh.tets);
-  add_notes(surface, flatness, result.report);
-  return result;
+  add_notes(surface, cubes.flatness, best.report);
+  return best;
 }
 
 }  // namespace coxa::meshing

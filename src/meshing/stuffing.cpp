@@ -39,7 +39,8 @@ class Stuffing {
   TetGrid build() {
     values_ = original_;
     grid_ = {};
-    grid_.x = lattice_.points;
+    grid_.x = regular_ = lattice_.points;
+    folded_.clear();
     snap();
     add_cuts();
     for (const Tet& t : lattice_.tets) fill(t);
@@ -51,6 +52,9 @@ class Stuffing {
       if (outer[v]) grid_.kinds[v] = NodeKind::first_face;
     return std::move(grid_);
   }
+
+  /// Nodes of elements that moved lattice points folded over.
+  const std::vector<Index>& folded() const { return folded_; }
 
   /// Keeps the lattice points behind these nodes where they are. @returns whether any moved before
   bool hold(const std::vector<Index>& nodes) {
@@ -126,8 +130,9 @@ class Stuffing {
       cuts_.push_back(whole ? -1 : static_cast<Index>(grid_.x.size()));
       if (whole) continue;
       const double share = std::clamp(share_of(e), kLeastShare, 1.0 - kLeastShare);
-      grid_.x.push_back((1.0 - share) * lattice_.points[at(e.first)] +
-                        share * lattice_.points[at(e.second)]);
+      const Vec3 &a = lattice_.points[at(e.first)], &b = lattice_.points[at(e.second)];
+      grid_.x.push_back((1.0 - share) * a + share * b);
+      regular_.push_back(0.5 * (a + b));
     }
   }
 
@@ -137,11 +142,16 @@ class Stuffing {
                                           edges_.begin())];
   }
 
+  // turned as it would be with points where the lattice has them and cuts midway, so that elements
+  // agree on their faces; what has no volume as it is, is folded
   void add(Index a, Index b, Index c, Index d) {
-    const auto& x = grid_.x;
+    const auto volume = [](const std::vector<Vec3>& x, const Tet& t) {
+      return volume6(x[at(t[0])], x[at(t[1])], x[at(t[2])], x[at(t[3])]);
+    };
     Tet t{a, b, c, d};
-    if (volume6(x[at(a)], x[at(b)], x[at(c)], x[at(d)]) < 0.0) std::swap(t[2], t[3]);
+    if (volume(regular_, t) < 0.0) std::swap(t[2], t[3]);
     grid_.tets.push_back(t);
+    if (volume(grid_.x, t) <= 0.0) folded_.insert(folded_.end(), t.begin(), t.end());
   }
 
   // the part of a lattice element inside; diagonals of cut faces start from the corner that comes
@@ -198,6 +208,8 @@ class Stuffing {
   std::vector<Edge> edges_;  // cut by the surface, sorted
   std::vector<Index> cuts_;  // node on each of them
   TetGrid grid_;
+  std::vector<Vec3> regular_;  // nodes where the lattice has them, and cuts midway
+  std::vector<Index> folded_;  // corners of elements without volume
 };
 
 using Face = std::array<Index, 3>;
@@ -262,7 +274,12 @@ std::vector<Index> pinched_nodes(const TetGrid& grid) {
 TetGrid stuffed(const Lattice& lattice, const TriangleTree& surface) {
   Stuffing stuffing(lattice, surface);
   TetGrid grid = stuffing.build();
-  while (stuffing.hold(pinched_nodes(grid))) grid = stuffing.build();
+  for (;;) {
+    // where nothing moves the parts of a lattice element have volume
+    const bool folded = stuffing.hold(stuffing.folded());
+    if (!stuffing.hold(pinched_nodes(grid)) && !folded) break;
+    grid = stuffing.build();
+  }
   return grid;
 }
 

@@ -76,5 +76,22 @@ TEST(Octree, IsFineWhereTheSurfaceBendsAndNoFinerThanAsked) {
   EXPECT_LE(size_near(coarse, Vec3(0, 0, 5)), 2.0);
 }
 
+TEST(Octree, IsFineAtThePlacesNamed) {
+  const Vec3 place(3.0, 1.0, 5.0);
+  OctreeOptions options{.flatness = 0.5, .smallest = 1.0, .largest = 4.0};
+  const TriMesh bar = coxa::test::box(Vec3(-20, -5, -5), Vec3(20, 5, 5));
+  const double before = Octree(bar, options).size_at(place);
+  EXPECT_GE(before, 2.0);
+  options.fine_places.push_back({place, 0.25});
+  const Octree octree(bar, options);
+  EXPECT_EQ(octree.size_at(place), 0.25);
+  EXPECT_EQ(octree.size_at(Vec3(-15.0, 1.0, 5.0)), before);
+  // elsewhere no cube is finer than asked for, but next to the place
+  for (const OctreeCell& leaf : leaves_of(octree))
+    if (octree.size_at(octree.position(leaf.centre())) < 0.99) {
+      EXPECT_LT((octree.position(leaf.centre()) - place).norm(), 4.0);
+    }
+}
+
 }  // namespace
 }  // namespace coxa::meshing

@@ -48,6 +48,17 @@ TEST(SolidMesh, FillsABox) {
   expect_good(coxa::test::box(Vec3(-10, -6, -5), Vec3(10, 6, 5)), 0.45);
 }
 
+TEST(SolidMesh, OpensAGapNarrowerThanItsCubes) {
+  // a ring, open by 0.45 mm, with faces of 2 by 2 mm on both sides
+  const double radius = 5.0, gap = 0.45;
+  const TriMesh ring =
+      coxa::test::lunate_shell(radius, 2.0, 2.0 * kPi - gap / radius, radians(20.0), 64, 2);
+  const MeshingResult made = mesh_surface(ring, {.method = Method::lattice});
+  EXPECT_LE(made.report.envelope, 0.25);
+  EXPECT_EQ(genus(test::envelope(made.mesh)), 0);
+  EXPECT_TRUE(meets_limits(made.report));
+}
+
 TEST(SolidMesh, SaysWhyALatticeWasTaken) {
   const MeshingResult made = mesh_surface(coxa::test::icosphere(3, 10.0), {.max_tets = 5000});
   ASSERT_FALSE(made.report.notes.empty());

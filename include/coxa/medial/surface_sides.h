@@ -33,4 +33,13 @@ struct SurfaceSides {
 /// threads
 SurfaceSides split_sides(const TriMesh& surface);
 
+/// What `split_sides` finds at most, for the T rays only: what faces another part of the surface
+/// need not be a sheet.
+struct FacingBound {
+  double sheetness = 0.0;           ///< at least that of the sides, in [0, 1]
+  double relative_thickness = 0.0;  ///< that of the sides
+};
+/// @throws Error bad_mesh if the surface is open or not manifold
+FacingBound facing_bound(const TriMesh& surface);
+
 }  // namespace coxa::medial
