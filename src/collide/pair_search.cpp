@@ -112,29 +112,29 @@ double search_limit(const OtherSurface& other, const Vec3& point, Index hint,
 
 }  // namespace
 
-std::optional<FacedPoint> find_faced_point(const OtherSurface& other, const Vec3& point,
-                                           const Vec3& normal, Index hint,
-                                           const ContactOptions& options) {
+SampleSearch find_faced_point(const OtherSurface& other, const Vec3& point, const Vec3& normal,
+                              Index hint, const ContactOptions& options) {
   const auto nearest = other.tree.nearest_within(point, search_limit(other, point, hint, options));
-  if (!nearest || beyond_border(other, point, *nearest)) return std::nullopt;
+  if (!nearest) return {std::nullopt, kInfinity};
+  const double distance = std::sqrt(nearest->squared_distance);
+  if (beyond_border(other, point, *nearest)) return {std::nullopt, distance};
 
   FacedPoint faced{nearest->triangle, nearest->triangle, nearest->barycentric, Vec3::Zero(), 1.0};
   if (options.normal == ContactNormal::smooth) {
     faced = along_smooth_normal(other, point, *nearest);
   } else {
-    const Vec3 offset = point - nearest->point;
-    const double distance = offset.norm();
-    faced.normal = distance > kTouching
-                       ? Vec3(other.tree.sign_at(point, *nearest) / distance * offset)
-                       : face_normal(other, nearest->triangle);
+    faced.normal =
+        distance > kTouching
+            ? Vec3(other.tree.sign_at(point, *nearest) / distance * (point - nearest->point))
+            : face_normal(other, nearest->triangle);
   }
   const double facing = -normal.dot(faced.normal);
-  if (options.facing > -1.0 && facing < options.facing) return std::nullopt;
+  if (options.facing > -1.0 && facing < options.facing) return {std::nullopt, distance};
   if (facing < options.facing_fully) {
     faced.share = (facing - options.facing) / (options.facing_fully - options.facing);
-    if (!(faced.share > 0.0)) return std::nullopt;
+    if (!(faced.share > 0.0)) return {std::nullopt, distance};
   }
-  return faced;
+  return {faced, distance};
 }
 
 Points edge_bulges(const TriMesh& mesh) {

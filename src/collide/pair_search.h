@@ -23,12 +23,16 @@ struct FacedPoint {
   double share = 1.0;               ///< in (0, 1], by how well the sample faces it
 };
 
-/// What a sample at `point` with outward normal `normal` faces; nullopt when nothing near enough
-/// does.
+/// What a search for the point that a sample faces comes to.
+struct SampleSearch {
+  std::optional<FacedPoint> faced;  ///< nullopt where nothing near enough is faced
+  double distance = 0.0;  ///< mm, to the nearest point; infinite beyond the search distance
+};
+
+/// What a sample at `point` with outward normal `normal` faces.
 /// @param hint  triangle that was nearest before, or -1: changes the cost, not the answer
-std::optional<FacedPoint> find_faced_point(const OtherSurface& other, const Vec3& point,
-                                           const Vec3& normal, Index hint,
-                                           const ContactOptions& options);
+SampleSearch find_faced_point(const OtherSurface& other, const Vec3& point, const Vec3& normal,
+                              Index hint, const ContactOptions& options);
 
 /// How far the smooth surface stands out from each edge of each triangle: the patch over a triangle
 /// is higher than the facet by the sum of bulge times both corners' weights, over its edges (edge k

@@ -152,29 +152,35 @@ void SurfaceContact::update_curvature(const VecX& x) {
   other_bulge_ = edge_bulges(other_mesh_);
 }
 
-/// Whether each owner has to be searched for; empty: all.
-std::vector<char> SurfaceContact::owners_within(double reach, const Points& slave) const {
-  if (!(reach < kInfinity) || options_.rule != ContactRule::nodal) return {};
-  if (searched_slave_.rows() != slave.rows() || options_.quadrature == ContactQuadrature::cut) {
-    return {};
+/// Whether each owner has to be searched for; empty: all. Takes from what every sample has of
+/// clearance how far the surfaces have moved since the last search.
+std::vector<char> SurfaceContact::owners_within(double reach, const Points& slave) {
+  if (options_.quadrature == ContactQuadrature::cut) return {};
+  if (searched_slave_.rows() == slave.rows()) {
+    const VecX way = (slave - searched_slave_).rowwise().norm();
+    const double other_way = (other_mesh_.points - searched_other_).rowwise().norm().maxCoeff();
+    for (std::size_t s = 0; s < samples_.size(); ++s) {
+      clearance_[s] -= way(slave_.triangles.row(samples_[s].triangle)).maxCoeff() + other_way;
+    }
   }
-  const double way = (slave - searched_slave_).rowwise().norm().maxCoeff() +
-                     (other_mesh_.points - searched_other_).rowwise().norm().maxCoeff();
-  if (!(way < reach)) return {};
-  std::vector<char> wanted(multiplier_.size());
-  for (std::size_t v = 0; v < wanted.size(); ++v) {
-    wanted[v] = !(searched_gap_[static_cast<Eigen::Index>(v)] > reach);
+  searched_slave_ = slave;
+  searched_other_ = other_mesh_.points;
+  if (!(reach < kInfinity) || options_.rule != ContactRule::nodal) return {};
+  std::vector<char> wanted(multiplier_.size(), 0);
+  for (std::size_t s = 0; s < samples_.size(); ++s) {
+    if (clearance_[s] > reach) continue;
+    for (int k = 0; k < 3; ++k) {
+      wanted[static_cast<std::size_t>(slave_.triangles(samples_[s].triangle, k))] = 1;
+    }
   }
   return wanted;
 }
 
-void SurfaceContact::note_search(const VecX& x, const Points& slave) {
-  searched_gap_ = VecX::Constant(static_cast<Eigen::Index>(multiplier_.size()), kNaN);
-  for (const ContactConstraint& constraint : constraints_) {
-    searched_gap_[constraint.owner] = gap(constraint, x);
-  }
-  searched_slave_ = slave;
-  searched_other_ = other_mesh_.points;
+/// How far a sample's pair can come together: by its distance, unless it is inside already.
+double SurfaceContact::clearance(const ContactPair& pair, const Vec3& point,
+                                 double distance) const {
+  const double gap = pair.normal.dot(point - other_point(pair, other_mesh_.points)) - pair.offset;
+  return std::min(gap, distance);
 }
 
 void SurfaceContact::update_pairs(const VecX& x, double reach) {
@@ -191,10 +197,12 @@ void SurfaceContact::update_pairs(const VecX& x, double reach) {
   }
 
   if (nearest_.size() != samples_.size()) nearest_.assign(samples_.size(), -1);
+  if (clearance_.size() != samples_.size()) clearance_.assign(samples_.size(), -kInfinity);
   const std::vector<char> wanted = owners_within(reach, slave.points);
   std::vector<std::optional<ContactPair>> found(samples_.size());
-  parallel_for(n_samples(), [&](Index s) {
-    const ContactSample& sample = samples_[static_cast<std::size_t>(s)];
+  parallel_for(n_samples(), [&](Index sample_index) {
+    const auto s = static_cast<std::size_t>(sample_index);
+    const ContactSample& sample = samples_[s];
     const auto is_wanted = [&](Index v) { return wanted[static_cast<std::size_t>(v)] != 0; };
     const auto corners = slave_.triangles.row(sample.triangle);
     if (!wanted.empty() && std::none_of(corners.begin(), corners.end(), is_wanted)) return;
@@ -206,19 +214,23 @@ void SurfaceContact::update_pairs(const VecX& x, double reach) {
     }
     const Vec3 normal =
         (at_vertices ? vertex_normal : facet_normals.row(sample.triangle).transpose()).normalized();
-    const auto faced =
-        find_faced_point(other, point, normal, nearest_[static_cast<std::size_t>(s)], options_);
-    nearest_[static_cast<std::size_t>(s)] = faced ? faced->nearest : -1;
-    if (!faced) return;
+    const auto [faced, distance] = find_faced_point(other, point, normal, nearest_[s], options_);
+    nearest_[s] = faced ? faced->nearest : -1;
+    if (!faced) {
+      // what is near but not faced may come to be faced anywhere
+      clearance_[s] = distance < kInfinity ? -kInfinity : options_.search_distance;
+      return;
+    }
     const double bulges =
         bulge(slave_bulge_, sample.triangle, sample.barycentric) * -normal.dot(faced->normal) +
         bulge(other_bulge_, faced->triangle, faced->barycentric);
-    found[static_cast<std::size_t>(s)] = {s,
-                                          faced->triangle,
-                                          faced->barycentric,
-                                          faced->normal,
-                                          options_.minimum_gap + bulges,
-                                          faced->share};
+    found[s] = {sample_index,
+                faced->triangle,
+                faced->barycentric,
+                faced->normal,
+                options_.minimum_gap + bulges,
+                faced->share};
+    clearance_[s] = clearance(*found[s], point, distance);
   });
 
   pairs_.clear();
@@ -233,7 +245,6 @@ void SurfaceContact::update_pairs(const VecX& x, double reach) {
   } else {
     make_nodal_constraints(wanted);
   }
-  if (wanted.empty()) note_search(x, slave.points);
 }
 
 }  // namespace coxa::collide

@@ -29,8 +29,14 @@ constexpr double kStalePairs = 0.03;
 constexpr double kFinestNewton = 0.03;
 // while a state settles, nodes of wider gaps than this are left alone, mm
 constexpr double kReach = 0.5;
-// a state that is only passed through may be so much less exact
-constexpr double kSlackOnTheWay = 20.0, kOverlapSlack = 10.0;
+// a state that is only passed through may be so much less exact, one led by hand still less: a
+// fiftieth of the joint force is left to the next step
+constexpr double kSlackOnTheWay = 20.0, kSlackByHand = 100.0, kOverlapSlack = 10.0;
+
+double slack_of(Exactness exactness) {
+  if (exactness == Exactness::result) return 1.0;
+  return exactness == Exactness::on_the_way ? kSlackOnTheWay : kSlackByHand;
+}
 
 /// How the gap of a constraint changes with the translation.
 Vec3 translation_slope(const collide::SurfaceContact& contact,
@@ -206,7 +212,7 @@ Settling Equilibrium::judge(const HipState& state, const Vec3& force, const Limi
 
 Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exactness,
                              const Monitor& monitor) {
-  const double slack = exactness == Exactness::result ? 1.0 : kSlackOnTheWay;
+  const double slack = slack_of(exactness);
   const Limits limits{
       .residual = slack * options_.residual_tolerance,
       .imbalance = slack * kImbalance * options_.residual_tolerance,
@@ -219,12 +225,12 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
   state.contact.clear_stiffening();
   for (int round = 0;; ++round) {
     monitor.check_cancelled();
-    state.contact.update_pairs(state.x, round == 0 ? kInfinity : kReach);
+    state.contact.update_pairs(state.x, kReach);
     Settling settling = judge(state, force, limits);
     settling.iterations = iterations;
     if (settling.converged) {
       // results tell gaps everywhere
-      if (exactness == Exactness::result && round > 0) state.contact.update_pairs(state.x);
+      if (exactness == Exactness::result) state.contact.update_pairs(state.x);
       return settling;
     }
     const bool hopeless = progress.stalled(settling.residual, settling.penetration);
@@ -252,12 +258,21 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
     iterations += newton.iterations;
     if (!newton.converged) tangent_age_ = 0;
     reason = newton.reason;
-    state.x = relaxation.next(before, state.x);
+    // by hand the pairs of one search will do
+    const bool taken_as_it_is =
+        exactness == Exactness::by_hand && newton.converged && newton.residual <= limits.residual;
+    if (!taken_as_it_is) state.x = relaxation.next(before, state.x);
     const double way = state.x.segment<3>(3 * system_.translation()).norm();
     if (!(way <= options_.max_translation)) {
       settling.reason =
           join_text("the head leaves the socket: it moved ", way,
                     " mm under the joint force, limit ", options_.max_translation, " mm");
+      return settling;
+    }
+    if (taken_as_it_is) {
+      settling.converged = true;
+      settling.residual = newton.residual;
+      settling.iterations = iterations;
       return settling;
     }
   }

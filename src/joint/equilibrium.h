@@ -45,7 +45,12 @@ struct Settling {
 };
 
 /// How exact a settling must be.
-enum class Exactness { on_the_way, result };
+enum class Exactness {
+  by_hand,     ///< a step led by hand: pairs are searched for once, the next step takes up what is
+               ///< left
+  on_the_way,  ///< a state only passed through
+  result
+};
 
 /// Static equilibrium of the hip at a bone pose under a joint force (or with the translation held).
 class Equilibrium {

@@ -15,7 +15,7 @@ namespace coxa::joint {
 
 JointOptions live_options() {
   JointOptions options;
-  options.max_rotation_step = radians(2.0);
+  options.max_rotation_step = radians(1.0);
   options.max_newton_iterations = 10;
   options.max_contact_updates = 12;
   return options;
@@ -68,6 +68,12 @@ FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
   const auto start = std::chrono::steady_clock::now();
   Equilibrium& equilibrium = exactness == Exactness::result ? exact_equilibrium : rough_equilibrium;
   const auto attempt = [&](HipState& trial) {
+    if (exactness == Exactness::by_hand) {
+      // what presses by overlap presses without it from now on: multipliers follow the movement
+      trial.contact.update_multipliers(trial.x, kInfinity);
+    } else {
+      trial.contact.clear_multipliers();  // a result does not depend on the way taken
+    }
     predictor.carry(system, trial, target);
     return equilibrium.settle(trial, force, exactness, monitor);
   };
@@ -81,7 +87,7 @@ FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
   }
   if (settling.converged) {
     // settling in place is no step
-    if (exactness == Exactness::on_the_way) predictor.note(state);
+    if (exactness == Exactness::by_hand) predictor.note(state);
     state = std::move(trial);
   }
   FrameResult frame;
@@ -138,7 +144,7 @@ LiveHip::Step LiveHip::Impl::attempt(const BonePose& next, const Monitor& monito
     step.frame.X_II = placed(state.pose);
     step.frame.angles = angles_of(state.pose);
   } else {
-    step.frame = solve(next, Exactness::on_the_way, monitor);
+    step.frame = solve(next, Exactness::by_hand, monitor);
   }
   step.frame.bone_clearance = clearance;
   return step;

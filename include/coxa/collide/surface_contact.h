@@ -100,10 +100,9 @@ class SurfaceContact : public dynamics::Force {
 
   /// Searches the pairs anew at particle positions x (3n values).
   ///
-  /// With a finite `reach` (mm; nodal rule) vertices whose gap was larger at the last search
-  /// everywhere have no constraint and cost nothing, unless the surfaces have moved by so much
-  /// since that they could have come to touch: then the search is everywhere after all. What
-  /// presses is the same either way.
+  /// With a finite `reach` (mm; nodal rule) vertices that are farther than that from the other
+  /// surface have no constraint, and those that cannot have come so near since they were last
+  /// searched for cost nothing. What presses is the same either way.
   void update_pairs(const VecX& x, double reach = kInfinity);
   /// Moves the obstacle's vertices; takes effect at the next update_pairs.
   void update_obstacle(const Points& points);
@@ -147,8 +146,8 @@ class SurfaceContact : public dynamics::Force {
   void make_samples();
   void update_areas(const VecX& areas);
   void prepare_other(const VecX& x);
-  std::vector<char> owners_within(double reach, const Points& slave) const;
-  void note_search(const VecX& x, const Points& slave);
+  std::vector<char> owners_within(double reach, const Points& slave);
+  double clearance(const ContactPair& pair, const Vec3& point, double distance) const;
   void append_entries(const ContactPair& pair, double share, Entries& entries) const;
   void append_constraint(ContactConstraint constraint, Entries& entries);
   void forget(std::size_t owner);
@@ -160,14 +159,13 @@ class SurfaceContact : public dynamics::Force {
 
   ContactOptions options_;
   ParticleSurface slave_;
-  std::optional<ParticleSurface> other_;  ///< nullopt: rigid obstacle
-  TriMesh other_mesh_;                    ///< current positions of the other surface
-  Points other_normals_;                  ///< at its vertices, for these positions
-  std::vector<ContactSample> samples_;    ///< as of the last update of pairs
-  Points slave_bulge_, other_bulge_;      ///< per triangle and edge, mm; empty: flat facets
-  /// Of the last search everywhere: gap of each owner, mm (NaN without a pair), and the surfaces.
-  VecX searched_gap_;
-  Points searched_slave_, searched_other_;
+  std::optional<ParticleSurface> other_;    ///< nullopt: rigid obstacle
+  TriMesh other_mesh_;                      ///< current positions of the other surface
+  Points other_normals_;                    ///< at its vertices, for these positions
+  std::vector<ContactSample> samples_;      ///< as of the last update of pairs
+  Points slave_bulge_, other_bulge_;        ///< per triangle and edge, mm; empty: flat facets
+  std::vector<double> clearance_;           ///< per sample: no gap is smaller than this, mm
+  Points searched_slave_, searched_other_;  ///< the surfaces at the last search
   std::vector<Index> nearest_;      ///< per sample: nearest triangle of the last search, or -1
   std::vector<double> multiplier_;  ///< per owner, MPa
   std::vector<double> stiffening_;  ///< per owner, >= 1
