@@ -1,122 +1,21 @@
-// Joint centres and bone frames on real bones: the tables of docs/motion.md sections 8.3 and 8.4.
+// Bone frames on real bones: the table of docs/motion.md section 8.4.
 #include <coxa/core/error.h>
-#include <coxa/core/rng.h>
 #include <coxa/geom/fits.h>
 #include <coxa/io/atlas_file.h>
-#include <coxa/io/surfaces.h>
-#include <coxa/mesh/topology.h>
 #include <coxa/motion/joint_centre.h>
 #include <coxa/pipeline/completed_bones.h>
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <string>
-#include <vector>
 
-namespace {
+#include "motion_cases.h"
 
-using namespace coxa;
+namespace coxa::verify {
+
 namespace fs = std::filesystem;
 
-constexpr std::pair<const char*, Side> kSides[] = {{"left", Side::left}, {"right", Side::right}};
-
-TriMesh read_if_there(const fs::path& path) {
-  return fs::exists(path) ? io::read_surface(path) : TriMesh{};
-}
-
-SurfaceSet read_hip(const fs::path& folder) {
-  SurfaceSet surfaces;
-  for (const char* name : {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"}) {
-    const TriMesh mesh = read_if_there(folder / (std::string(name) + ".ply"));
-    if (!mesh.empty()) surfaces[name].mesh = mesh;
-  }
-  return surfaces;
-}
-
-template <class Keep>
-TriMesh part(const TriMesh& mesh, const Keep& keep) {
-  std::vector<Index> kept;
-  for (Index t = 0; t < mesh.n_triangles(); ++t) {
-    const Vec3 p = mesh.points(mesh.triangles.row(t), Eigen::all).colwise().mean();
-    if (keep(p)) kept.push_back(t);
-  }
-  return sub_mesh(mesh, kept).mesh;
-}
-
-TriMesh noisy(TriMesh mesh, double sd, Rng& rng) {
-  for (Index v = 0; v < mesh.n_vertices(); ++v) mesh.points.row(v) += sd * rng.normal3();
-  return mesh;
-}
-
-// ---- joint centres ----
-
-Vec3 head_centre(const TriMesh& femur, const Vec3& start) {
-  SurfaceSet alone;
-  alone["femur"].mesh = femur;
-  return motion::find_joint_centre(alone, {.start = start, .congruency_samples = 0}).chosen.centre;
-}
-
-// the head's centre when only the half on the side of `direction` is seen, with noise
-double move_of_half(const TriMesh& femur, const motion::JointCentre& head, const Vec3& direction,
-                    double noise, Rng& rng) {
-  const double reach = 1.15 * head.radius;
-  const TriMesh half = part(femur, [&](const Vec3& p) {
-    const Vec3 d = p - head.centre;
-    return d.norm() > reach || d.dot(direction) >= 0;
-  });
-  const Vec3 start = head.centre + 3.0 * rng.normal3();
-  return (head_centre(noisy(half, noise, rng), start) - head.centre).norm();
-}
-
-// Table of the definitions' distances from the femoral head's sphere, and of how far that sphere's
-// centre moves when noise of 0.5 mm is added to every vertex and half of the head is not seen.
-void print_centres(const fs::path& shared) {
-  constexpr double kNoise = 0.5;  // mm, of every coordinate of every vertex
-  std::printf(
-      "| hip | radius | femoral cartilage | acetabular cartilage | acetabulum | "
-      "congruency | largest spread | whole head | upper half | anterior | posterior | "
-      "medial | half off the neck |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  VecX sum = VecX::Zero(6), largest = VecX::Zero(6);
-  int n = 0;
-  for (const int number : {1, 2, 3, 4, 5, 6, 8, 10, 11}) {
-    for (const auto& [word, side] : kSides) {
-      const SurfaceSet surfaces =
-          read_hip(shared / "data/libhip" / ("m" + std::to_string(number)) / word);
-      if (!surfaces.contains("femur")) continue;
-      const TriMesh& femur = surfaces.at("femur").mesh;
-      const auto result = motion::find_joint_centre(surfaces);
-      std::printf("| m%d %s | %.1f |", number, word, result.chosen.radius);
-      for (std::size_t k = 1; k < result.all.size(); ++k)
-        std::printf(" %.2f |", (result.all[k].centre - result.chosen.centre).norm());
-      std::printf(" %.2f |", result.largest_spread);
-      const Vec3 off_neck = result.chosen.centre - femur.points.colwise().mean().transpose();
-      const Vec3 medial = side == Side::right ? Vec3(Vec3::UnitX()) : Vec3(-Vec3::UnitX());
-      const Vec3 halves[] = {Vec3::Zero(),  Vec3::UnitZ(), -Vec3::UnitY(),
-                             Vec3::UnitY(), medial,        off_neck};
-      Rng rng(1);
-      for (Index k = 0; k < 6; ++k) {
-        const double move = move_of_half(femur, result.chosen, halves[k], kNoise, rng);
-        sum[k] += move;
-        largest[k] = std::max(largest[k], move);
-        std::printf(" %.2f |", move);
-      }
-      ++n;
-      std::printf("\n");
-      std::fflush(stdout);
-    }
-  }
-  std::printf("mean    ");
-  for (Index k = 0; k < 6; ++k) std::printf(" %.2f |", sum[k] / n);
-  std::printf("\nlargest ");
-  for (Index k = 0; k < 6; ++k) std::printf(" %.2f |", largest[k]);
-  std::printf("\n");
-}
-
-// ---- bone frames ----
+namespace {
 
 // the vertices within `depth` of the farthest one along `direction`: their mean
 Vec3 farthest(const Points& points, const Vec3& direction, double depth) {
@@ -203,6 +102,8 @@ Vec3 turn(const Mat3& truth, const Mat3& found) {
 // degrees by which the line of the upper shaft passes in front of the knee: means of two sides
 constexpr double kBowOfVhf = 8.8, kBowOfVhm = 6.8;
 
+}  // namespace
+
 void print_frames(const fs::path& shared, const fs::path& atlas_file) {
   const shape::Atlas atlas = io::read_atlas(atlas_file);
   for (const std::string& name : atlas.subjects) {
@@ -253,23 +154,4 @@ void print_frames(const fs::path& shared, const fs::path& atlas_file) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  CLI::App app{"Joint centres and bone frames on real bones"};
-  app.require_subcommand(1);
-  std::string shared = "../shared", atlas;
-  app.add_option("--shared", shared, "folder with data/libhip, data/visible_human");
-  auto* centres = app.add_subcommand("centres", "spread of the definitions, noise, half a head");
-  auto* frames = app.add_subcommand("frames", "frames of cropped bones against whole ones");
-  frames->add_option("--atlas", atlas, "made without vhf and vhm")->required();
-  CLI11_PARSE(app, argc, argv);
-  try {
-    if (centres->parsed()) print_centres(shared);
-    if (frames->parsed()) print_frames(shared, atlas);
-  } catch (const coxa::Error& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
-  return 0;
-}
+}  // namespace coxa::verify

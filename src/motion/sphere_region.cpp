@@ -1,4 +1,3 @@
-#include "sphere_region.h"
 
 #include <coxa/core/error.h>
 #include <coxa/core/rng.h>
@@ -12,17 +11,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "head_completion.h"
+
 namespace coxa::motion {
 namespace {
 
 // normals count as radial within this cosine (37 degrees: wide, because surfaces from images are
 // rough)
 constexpr double kRadialCosine = 0.8;
-
-struct Fit {
-  Sphere sphere;
-  std::vector<Index> region;
-};
 
 Sphere fit_region(const SurfaceSamples& samples, const std::vector<Index>& region,
                   double outlier_scale) {
@@ -34,23 +30,20 @@ Sphere fit_region(const SurfaceSamples& samples, const std::vector<Index>& regio
 
 // share of the sphere's directions with a region point within 10 degrees
 double covered_share(const Points& points, const Vec3& centre) {
-  constexpr int kDirections = 300;
+  constexpr Index kDirections = 300;
   const double near = std::cos(radians(10.0));
-  const Points directions = (points.rowwise() - centre.transpose()).rowwise().normalized();
+  const Points seen = (points.rowwise() - centre.transpose()).rowwise().normalized();
+  const Points directions = spiral_directions(kDirections);
   int covered = 0;
-  for (int k = 0; k < kDirections; ++k) {
-    // spiral points, evenly spread
-    const double z = 1.0 - (2.0 * k + 1.0) / kDirections, a = k * kPi * (3.0 - std::sqrt(5.0));
-    const Vec3 direction(std::sqrt(1.0 - z * z) * std::cos(a), std::sqrt(1.0 - z * z) * std::sin(a),
-                         z);
-    if ((directions * direction).maxCoeff() > near) ++covered;
+  for (Index k = 0; k < kDirections; ++k) {
+    if ((seen * directions.row(k).transpose()).maxCoeff() > near) ++covered;
   }
   return static_cast<double>(covered) / kDirections;
 }
 
 // half-width of the 95 % interval by leaving out one of eight sectors at a time (jackknife over
 // sectors: errors of a surface are alike near by, so single points are no independent witnesses)
-double sector_interval(const SurfaceSamples& samples, const Fit& fit, double outlier_scale) {
+double sector_interval(const SurfaceSamples& samples, const RegionFit& fit, double outlier_scale) {
   constexpr int kSectors = 8;
   const Points points = samples.points(fit.region, Eigen::all);
   const Vec3 pole = (points.colwise().mean().transpose() - fit.sphere.centre).normalized();
@@ -74,7 +67,7 @@ double sector_interval(const SurfaceSamples& samples, const Fit& fit, double out
   return 1.96 * std::sqrt((n - 1.0) / n * sum / 3.0);
 }
 
-JointCentre as_centre(const SurfaceSamples& samples, const Fit& fit, double outlier_scale) {
+JointCentre as_centre(const SurfaceSamples& samples, const RegionFit& fit, double outlier_scale) {
   JointCentre result;
   result.centre = fit.sphere.centre;
   result.radius = fit.sphere.radius;
@@ -150,9 +143,16 @@ std::optional<Vec3> find_head(const SurfaceSamples& samples, double smallest_rad
   return best > 1.0 ? found : std::nullopt;  // at least a twelfth of a sphere
 }
 
-namespace {
+Points spiral_directions(Index n) {
+  Points directions(n, 3);
+  for (Index k = 0; k < n; ++k) {
+    const double z = 1.0 - (2.0 * k + 1.0) / n, a = k * kPi * (3.0 - std::sqrt(5.0));
+    const double across = std::sqrt(1.0 - z * z);
+    directions.row(k) = Vec3(across * std::cos(a), across * std::sin(a), z);
+  }
+  return directions;
+}
 
-// direction of the neck: from the head's centre to the bone a little farther out than the head
 Vec3 neck_direction(const SurfaceSamples& samples, const Vec3& centre, double radius) {
   Vec3 sum = Vec3::Zero();
   for (Eigen::Index k = 0; k < samples.points.rows(); ++k) {
@@ -161,6 +161,8 @@ Vec3 neck_direction(const SurfaceSamples& samples, const Vec3& centre, double ra
   }
   return sum.squaredNorm() > 0 ? sum.normalized() : Vec3::Zero().eval();
 }
+
+namespace {
 
 double median_distance(const SurfaceSamples& samples, const Vec3& centre, Facing facing) {
   std::vector<double> distances;
@@ -179,12 +181,7 @@ double median_distance(const SurfaceSamples& samples, const Vec3& centre, Facing
   return distances[distances.size() / 2];
 }
 
-struct RegionRule {
-  double sign = 1.0;         // +1: facing away from the centre
-  double band = 4.0;         // mm about the radius
-  Vec3 neck = Vec3::Zero();  // zero: no neck to leave out
-  double neck_cosine = 1.0;
-};
+}  // namespace
 
 std::vector<Index> find_region(const SurfaceSamples& samples, const Sphere& sphere,
                                const RegionRule& rule) {
@@ -200,10 +197,12 @@ std::vector<Index> find_region(const SurfaceSamples& samples, const Sphere& sphe
   return region;
 }
 
+namespace {
+
 // alternates between choosing the region and fitting it, with a band that narrows from 6 to 2 mm
-Fit fit_with_region(const SurfaceSamples& samples, Sphere sphere, RegionRule rule,
-                    bool leave_neck_out, const JointCentreOptions& options) {
-  Fit fit{sphere, {}};
+RegionFit fit_with_region(const SurfaceSamples& samples, Sphere sphere, RegionRule rule,
+                          bool leave_neck_out, const JointCentreOptions& options) {
+  RegionFit fit{sphere, {}};
   for (int round = 0; round < 12; ++round) {
     rule.band = std::max(2.0, 6.0 - round);
     if (leave_neck_out) rule.neck = neck_direction(samples, fit.sphere.centre, fit.sphere.radius);
@@ -218,16 +217,32 @@ Fit fit_with_region(const SurfaceSamples& samples, Sphere sphere, RegionRule rul
 
 }  // namespace
 
+RegionFit fit_off_neck(const SurfaceSamples& samples, const Sphere& first,
+                       const JointCentreOptions& options) {
+  return fit_with_region(samples, first, {}, true, options);
+}
+
+Sphere first_sphere(const SurfaceSamples& samples, const Vec3& start) {
+  return {.centre = start, .radius = median_distance(samples, start, Facing::outward), .rms = 0.0};
+}
+
 JointCentre fit_femoral_head(const SurfaceSamples& samples, const Vec3& start,
                              const JointCentreOptions& options) {
-  const Sphere first{
-      .centre = start, .radius = median_distance(samples, start, Facing::outward), .rms = 0.0};
-  const Fit fit = fit_with_region(samples, first, {}, true, options);
-  JointCentre result = as_centre(samples, fit, options.outlier_scale);
+  const RegionFit seen = fit_off_neck(samples, first_sphere(samples, start), options);
+  JointCentre result = as_centre(samples, seen, options.outlier_scale);
   result.definition = "femoral_head";
   result.region =
       join_text("femur within 2 mm of the sphere, facing outward, farther than ",
                 std::lround(degrees(options.neck_cone)), " degrees from the neck's direction");
+  if (!options.head_prior) return result;
+  const CompletedHead completed = complete_head(samples, seen, *options.head_prior, options);
+  if (completed.added_share == 0) return result;
+  const RegionFit whole = fit_off_neck(completed.samples, seen.sphere, options);
+  result.centre = whole.sphere.centre;
+  result.radius = whole.sphere.radius;
+  result.interval = std::hypot(result.interval, 1.96 * completed.centre_sd);
+  result.region += join_text("; ", std::lround(100.0 * completed.added_share),
+                             " % of it not in view, completed by the mean shape of heads");
   return result;
 }
 

@@ -3,9 +3,11 @@
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
 #include <coxa/geom/triangle_tree.h>
+#include <coxa/io/head_shape_file.h>
 #include <coxa/mesh/mirrored.h>
 #include <coxa/mesh/topology.h>
 #include <coxa/mesh/vertex_normals.h>
+#include <coxa/pipeline/subject.h>
 #include <coxa/segment/model_fit.h>
 
 #include <algorithm>
@@ -118,6 +120,11 @@ const TriMesh* find_mesh(const SurfaceSet& surfaces, const char* name) {
 }
 
 }  // namespace
+
+motion::JointCentreOptions joint_centre_options(Side side) {
+  return {.head_prior =
+              motion::HeadPrior{io::read_head_shape(shipped_data("femoral_head.toml")), side}};
+}
 
 CompletedBone complete_bone(const TriMesh& seen, const shape::StructureModel& model,
                             const Vec3& head_centre, Side side) {

@@ -2,6 +2,7 @@
 
 #include <coxa/core/error.h>
 #include <coxa/io/files.h>
+#include <coxa/pipeline/completed_bones.h>
 #include <coxa/pipeline/motion_stage.h>
 #include <coxa/pipeline/segment_stage.h>
 #include <coxa/pipeline/subject.h>
@@ -39,7 +40,8 @@ MeasuredHip read_measured_hip(const fs::path& run_folder, const Monitor& monitor
   MeasuredHip hip;
   hip.side = side_of(read_record(segmentation / "segment.json"), segmentation);
   hip.surfaces = read_surfaces(segmentation);
-  hip.head = motion::find_joint_centre(hip.surfaces, {}, monitor).chosen;
+  hip.head =
+      motion::find_joint_centre(hip.surfaces, joint_centre_options(hip.side), monitor).chosen;
   if (has_motion(run_folder)) {
     hip.frames = read_motion_artefacts(run_folder / "motion", hip.side).frames;
   } else {

@@ -176,7 +176,8 @@ Record run_motion_stage(const Subject& subject, const fs::path& segment_folder,
                         const fs::path& folder, Reuse reuse, const Monitor& monitor) {
   const auto body = [&](const fs::path& partial, Record& record) {
     const SurfaceSet surfaces = read_surfaces(segment_folder);
-    const auto centre = motion::find_joint_centre(surfaces, {}, monitor);
+    const auto centre =
+        motion::find_joint_centre(surfaces, joint_centre_options(subject.side), monitor);
     motion::FrameLandmarks landmarks;
     if (!subject.landmarks.empty()) landmarks.points = io::read_landmarks(subject.landmarks);
     const auto frames = make_completed_frames(surfaces, landmarks, io::read_atlas(subject.atlas),

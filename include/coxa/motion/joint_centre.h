@@ -3,6 +3,7 @@
 #include <coxa/core/monitor.h>
 #include <coxa/core/types.h>
 #include <coxa/mesh/surface_set.h>
+#include <coxa/motion/head_shape.h>
 
 #include <optional>
 #include <string>
@@ -22,6 +23,12 @@ struct JointCentre {
   std::string region;          ///< what was fitted, in words
 };
 
+/// What is known about a femoral head beyond what is in view.
+struct HeadPrior {
+  HeadShape shape;
+  Side side = Side::right;  ///< of the hip
+};
+
 struct JointCentreOptions {
   std::optional<Vec3> start =
       {};  ///< mm, near the head's centre (a landmark); found from the femur when absent
@@ -32,6 +39,9 @@ struct JointCentreOptions {
   double outlier_scale = 4.7;  ///< Tukey cut-off of the sphere fits, in robust standard deviations
   Index congruency_samples =
       300;  ///< points at which the space between the surfaces is compared; 0: skip
+  /// Completes a head of the femur that is seen in part; the surfaces must be in LPS then. A head
+  /// seen whole is not touched.
+  std::optional<HeadPrior> head_prior = {};
 };
 
 /// All centres that these surfaces allow, and the one to use.

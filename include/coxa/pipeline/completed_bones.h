@@ -2,6 +2,7 @@
 
 #include <coxa/mesh/surface_set.h>
 #include <coxa/motion/bone_frames.h>
+#include <coxa/motion/joint_centre.h>
 #include <coxa/shape/atlas.h>
 
 namespace coxa::pipeline {
@@ -14,6 +15,10 @@ struct CompletedBone {
   double residual = 0.0;          ///< mm, root mean square where the bone is in view
   double in_view = 0.0;           ///< share of the model's vertices that found the bone, 0..1
 };
+
+/// How a joint centre is found: a head seen in part is completed by the mean shape of heads that
+/// ships with coxa (data/femoral_head.toml).
+motion::JointCentreOptions joint_centre_options(Side side);
 
 /// Most probable shape of `model` given the part of a bone that is in view.
 ///
