@@ -1,13 +1,10 @@
 #include <coxa/medial/surface_sides.h>
 
+#include "signed_mode.h"
+
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
-#include <coxa/core/rng.h>
-#include <coxa/geom/triangle_tree.h>
 #include <coxa/mesh/topology.h>
-
-#include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -15,113 +12,7 @@
 namespace coxa::medial {
 namespace {
 
-constexpr double kSharpAngle = 0.5;       // rad: edges bent this much hardly bind their triangles
-constexpr double kFacing = 0.3;           // smallest cosine between opposing normals of a sheet
-constexpr double kReach = 4.0;            // times the median thickness: no partner beyond
-constexpr double kRegularisation = 1e-6;  // of the mean diagonal: keeps the factor definite
-constexpr int kInverseIterations = 25;
-
-struct Opposite {
-  Index triangle = -1;  // met by the inward ray; -1 where none
-  double distance = 0.0;
-  double facing = 0.0;  // minus the cosine between the two normals
-};
-
-// edge a-b and the two triangles it joins
-struct SharedEdge {
-  Index a = 0, b = 0, left = 0, right = 0;
-};
-
-std::vector<SharedEdge> shared_edges(const TriMesh& surface) {
-  require_closed_manifold(surface, "surface to split into two faces");
-  const MeshEdges edges = mesh_edges(surface);
-  std::vector<SharedEdge> shared;
-  for (Index e = 0; e < edges.triangles.size(); ++e) {
-    const auto pair = edges.triangles[e];
-    shared.push_back({edges.vertices(e, 0), edges.vertices(e, 1), pair[0], pair[1]});
-  }
-  return shared;
-}
-
-struct Geometry {
-  Points centroids, normals;
-  VecX areas;
-};
-
-Geometry triangle_geometry(const TriMesh& surface) {
-  Geometry g;
-  g.centroids.resize(surface.n_triangles(), 3);
-  g.normals.resize(surface.n_triangles(), 3);
-  g.areas.resize(surface.n_triangles());
-  for (Index t = 0; t < surface.n_triangles(); ++t) {
-    const Vec3 a = surface.points.row(surface.triangles(t, 0));
-    const Vec3 b = surface.points.row(surface.triangles(t, 1));
-    const Vec3 c = surface.points.row(surface.triangles(t, 2));
-    const Vec3 n = (b - a).cross(c - a);
-    g.centroids.row(t) = (a + b + c) / 3.0;
-    g.areas[t] = 0.5 * n.norm();
-    g.normals.row(t) = n / std::max(n.norm(), 1e-300);
-  }
-  return g;
-}
-
-std::vector<Opposite> find_opposites(const TriMesh& surface, const Geometry& g) {
-  const TriangleTree tree(surface.points, surface.triangles);
-  const double diagonal =
-      (surface.points.colwise().maxCoeff() - surface.points.colwise().minCoeff()).norm();
-  std::vector<Opposite> opposites(static_cast<std::size_t>(surface.n_triangles()));
-  parallel_for(surface.n_triangles(), [&](Index t) {
-    const Vec3 inward = -g.normals.row(t).transpose();
-    if (inward.squaredNorm() < 0.5) return;
-    const double offset = 1e-6 * diagonal;
-    const Vec3 origin = g.centroids.row(t).transpose() + offset * inward;
-    const auto hit = tree.first_hit(origin, inward, diagonal);
-    if (!hit || hit->triangle == t) return;
-    opposites[static_cast<std::size_t>(t)] = {hit->triangle, hit->distance + offset,
-                                              inward.dot(g.normals.row(hit->triangle))};
-  });
-  return opposites;
-}
-
-// lowest eigenvector of the signed Laplacian, by inverse iteration from a seeded start
-VecX signed_mode(const Geometry& g, const std::vector<SharedEdge>& edges, const Points& points,
-                 const std::vector<Opposite>& opposites) {
-  const Index n = static_cast<Index>(g.areas.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  VecX diagonal = VecX::Zero(n);
-  auto couple = [&](Index i, Index j, double weight, double sign) {
-    diagonal[i] += weight;
-    diagonal[j] += weight;
-    entries.emplace_back(std::max(i, j), std::min(i, j), -sign * weight);
-  };
-  for (const SharedEdge& e : edges) {
-    const double length = (points.row(e.a) - points.row(e.b)).norm();
-    const double apart = (g.centroids.row(e.left) - g.centroids.row(e.right)).norm();
-    const double bend =
-        std::acos(std::clamp(g.normals.row(e.left).dot(g.normals.row(e.right)), -1.0, 1.0));
-    const double weight = std::exp(-std::pow(bend / kSharpAngle, 2)) + 1e-4;
-    couple(e.left, e.right, weight * length / std::max(apart, 1e-9), 1.0);
-  }
-  for (Index i = 0; i < n; ++i) {
-    const Opposite& o = opposites[static_cast<std::size_t>(i)];
-    if (o.triangle < 0 || o.facing <= 0.0 || o.distance <= 0.0) continue;
-    const double reach = std::max(o.distance, std::sqrt(g.areas[i]));
-    couple(i, o.triangle, std::pow(o.facing, 3) * g.areas[i] / (reach * reach), -1.0);
-  }
-  const double shift = kRegularisation * diagonal.mean();
-  for (Index i = 0; i < n; ++i) entries.emplace_back(i, i, diagonal[i] + shift);
-  Eigen::SparseMatrix<double> L(n, n);
-  L.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(L);
-  Rng rng(1);
-  VecX x(n);
-  for (Index i = 0; i < n; ++i) x[i] = rng.uniform(-1.0, 1.0);
-  for (int k = 0; k < kInverseIterations; ++k) {
-    x = factor.solve(g.areas.cwiseProduct(x));
-    x /= x.cwiseAbs().maxCoeff();
-  }
-  return x;
-}
+constexpr double kReach = 4.0;  // times the median thickness: no partner beyond
 
 // islands of one side inside the other take the label around them: only the largest piece remains
 void absorb_islands(const std::vector<SharedEdge>& edges, const VecX& areas,
@@ -153,24 +44,6 @@ void absorb_islands(const std::vector<SharedEdge>& edges, const VecX& areas,
   for (std::size_t i = 0; i < n; ++i) {
     if (labels[i] == side && root(static_cast<Index>(i)) != largest) labels[i] = other;
   }
-}
-
-// median over the area of the distance to the opposite triangle, where the two face each other
-double median_thickness(const VecX& areas, const std::vector<Opposite>& opposites) {
-  std::vector<std::pair<double, double>> facing;  // distance, area
-  double total = 0.0;
-  for (std::size_t t = 0; t < opposites.size(); ++t) {
-    if (opposites[t].triangle < 0 || opposites[t].facing <= kFacing) continue;
-    facing.emplace_back(opposites[t].distance, areas[static_cast<Index>(t)]);
-    total += areas[static_cast<Index>(t)];
-  }
-  std::sort(facing.begin(), facing.end());
-  double sum = 0.0;
-  for (const auto& [distance, area] : facing) {
-    sum += area;
-    if (sum >= 0.5 * total) return distance;
-  }
-  return 0.0;
 }
 
 bool may_be_partner(const Opposite& o, double reach) {
@@ -244,7 +117,7 @@ SurfaceSides split_sides(const TriMesh& surface) {
   const std::vector<SharedEdge> edges = shared_edges(surface);
   const Geometry g = triangle_geometry(surface);
   const std::vector<Opposite> opposites = find_opposites(surface, g);
-  const VecX x = signed_mode(g, edges, surface.points, opposites);
+  const VecX x = signed_mode(surface, edges, g, opposites);
 
   const double thickness = median_thickness(g.areas, opposites);
   const Pairing pairing{x, opposites, kReach * thickness};

@@ -146,6 +146,68 @@ std::vector<float> opened(const std::vector<float>& values, const Grid& grid, do
   return distance;
 }
 
+// the triangle in pieces with edges of at most `edge` mm, three corners each
+void append_pieces(const std::array<Vec3, 3>& corners, double edge, std::vector<Vec3>& pieces) {
+  const auto& [a, b, c] = corners;
+  if (std::max({(a - b).norm(), (b - c).norm(), (c - a).norm()}) <= edge) {
+    pieces.insert(pieces.end(), corners.begin(), corners.end());
+    return;
+  }
+  const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+  for (const auto& part : {std::array<Vec3, 3>{a, ab, ca}, std::array<Vec3, 3>{ab, b, bc},
+                           std::array<Vec3, 3>{ca, bc, c}, std::array<Vec3, 3>{ab, bc, ca}})
+    append_pieces(part, edge, pieces);
+}
+
+/// Loose pieces of the old surface that lie outside of what the distances enclose.
+TriMesh lost_pieces(const TriMesh& mesh, const std::vector<float>& values, const Grid& grid) {
+  constexpr double kPiece = 2.0, kLost = 0.5;  // grid spacings
+  std::vector<Vec3> pieces;
+  for (Index t = 0; t < mesh.n_triangles(); ++t)
+    append_pieces({mesh.points.row(mesh.triangles(t, 0)), mesh.points.row(mesh.triangles(t, 1)),
+                   mesh.points.row(mesh.triangles(t, 2))},
+                  kPiece * grid.spacing, pieces);
+  const auto n = static_cast<Index>(pieces.size() / 3);
+  std::vector<char> lost(pieces.size() / 3, 1);
+  if (std::any_of(values.begin(), values.end(), [](float v) { return v > 0.0f; })) {
+    const auto position = [&](const Vec3& i) { return Vec3(grid.origin + grid.spacing * i); };
+    const TriMesh seen = iso_surface(grid.size, values, 0.0, position);
+    const TriangleTree tree(seen.points, seen.triangles);
+    parallel_for(n, [&](Index i) {
+      const auto first = static_cast<std::size_t>(3 * i);
+      const Vec3 middle = (pieces[first] + pieces[first + 1] + pieces[first + 2]) / 3.0;
+      lost[static_cast<std::size_t>(i)] = tree.signed_distance(middle) > kLost * grid.spacing;
+    });
+  }
+  std::vector<Vec3> kept;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    if (lost[i / 3]) kept.push_back(pieces[i]);
+  TriMesh loose;
+  loose.points.resize(static_cast<Index>(kept.size()), 3);
+  loose.triangles.resize(static_cast<Index>(kept.size() / 3), 3);
+  for (Index i = 0; i < loose.points.rows(); ++i) {
+    loose.points.row(i) = kept[static_cast<std::size_t>(i)];
+    loose.triangles(i / 3, i % 3) = i;
+  }
+  return loose;
+}
+
+/// Joins walls around loose triangles, `half` mm to both sides, with what the distances enclose.
+void update_with_walls(const TriMesh& loose, double half, const Grid& grid,
+                       std::vector<float>& values) {
+  const TriangleTree tree(loose.points, loose.triangles);
+  const double band = half + kBand * grid.spacing;
+  parallel_for(grid.size[2], [&](Index k) {
+    for (Index j = 0; j < grid.size[1]; ++j)
+      for (Index i = 0; i < grid.size[0]; ++i) {
+        const auto near = tree.nearest_within(grid.origin + grid.spacing * Vec3(i, j, k), band);
+        if (!near) continue;
+        float& value = values[grid.offset(i, j, k)];
+        value = std::max(value, static_cast<float>(half - std::sqrt(near->squared_distance)));
+      }
+  });
+}
+
 // even triangles of the length asked for or less; where they fold at sharp rims, about as many that
 // follow the shape, or else those of the grid
 TriMesh fewer_triangles(const TriMesh& raw, double target_edge) {
@@ -154,9 +216,14 @@ TriMesh fewer_triangles(const TriMesh& raw, double target_edge) {
     if (update_unfolded(even) && validate(even).valid()) return even;
   }
   const double of_triangle = 0.25 * std::sqrt(3.0) * target_edge * target_edge;
-  const auto wanted = static_cast<Index>(2.0 * triangle_areas(raw).sum() / of_triangle);
-  const TriMesh fewer = decimate(raw, {.n_triangles = std::max<Index>(wanted, 4)});
-  return validate(fewer).valid() ? fewer : raw;
+  const double wanted = triangle_areas(raw).sum() / of_triangle;
+  for (const double share : {2.0, 4.0, 8.0}) {
+    const auto n = static_cast<Index>(share * wanted);
+    if (n >= raw.n_triangles()) break;
+    const TriMesh fewer = decimate(raw, {.n_triangles = std::max<Index>(n, 4)});
+    if (validate(fewer).valid()) return fewer;
+  }
+  return raw;
 }
 
 // how far the new surface is from the old one, and what of the old one it leaves out
@@ -196,18 +263,25 @@ Rebuilt rebuild(const TriMesh& mesh, const RebuildOptions& options) {
           " mm");
   const TriangleTree old_surface(mesh.points, mesh.triangles);  // refuses what cannot be read
   const Grid grid(mesh.points, options.spacing);
-  std::vector<float> values = inner_distance(mesh, grid, options.opening + options.thickening);
+  std::vector<float> values = inner_distance(mesh, grid, options.opening);
   if (options.opening > 0.0) values = opened(values, grid, options.opening);
   for (int axis = 0; axis < 3 && options.smoothing > 0.0; ++axis)
     values = blurred(values, grid, axis, options.smoothing / options.spacing);
-  for (float& value : values) value += static_cast<float>(options.thickening);
+  double thickened_area = 0.0;
+  if (options.thickening > 0.0) {
+    const TriMesh loose = lost_pieces(mesh, values, grid);
+    if (!loose.empty()) update_with_walls(loose, options.thickening, grid, values);
+    thickened_area = loose.empty() ? 0.0 : triangle_areas(loose).sum();
+  }
   if (std::none_of(values.begin(), values.end(), [](float v) { return v > 0.0f; }))
     fail(ErrorCode::bad_mesh, "the surface encloses nothing that a grid of ", options.spacing,
          " mm could see");
   const auto position = [&](const Vec3& index) { return Vec3(grid.origin + grid.spacing * index); };
   const TriMesh raw = without_crumbs(iso_surface(grid.size, values, 0.0, position));
 
-  Rebuilt result{fewer_triangles(raw, options.target_edge)};
+  Rebuilt result;
+  result.mesh = fewer_triangles(raw, options.target_edge);
+  result.thickened_area = thickened_area;
   update_moves(mesh, old_surface, options.max_move, result);
   return result;
 }

@@ -26,9 +26,9 @@ namespace {
 // grid and edge length of a surface made anew, mm: a fraction of cartilage's thickness
 constexpr double kRebuildSpacing = 0.3, kRebuildEdge = 0.7;
 
-// where more than this of a surface would be left out, mm, it is moved outwards by half the
-// thickness that a grid can see, so that its thin parts stay
-constexpr double kLargestLoss = 0.3, kThickening = 0.2;
+// where more than this of a surface would be left out, mm, its thin parts become walls of twice the
+// thickening on a finer grid, which must see them
+constexpr double kLargestLoss = 0.3, kThickening = 0.15, kThinSpacing = 0.2, kThinEdge = 0.5;
 
 // a surface that must move farther than this, mm, about as thick as cartilage, is not evened out
 // but another surface
@@ -71,11 +71,13 @@ TriMesh made_valid(TriMesh surface, const ValidityReport& before, const std::str
     const bool thickened = rebuilt.largest_loss > kLargestLoss;
     if (thickened)
       rebuilt = rebuild(
-          surface,
-          {.spacing = kRebuildSpacing, .thickening = kThickening, .target_edge = kRebuildEdge});
+          surface, {.spacing = kThinSpacing, .thickening = kThickening, .target_edge = kThinEdge});
+    if (rebuilt.thickened_area > 0.0)
+      changes.push_back(join_text(rebuilt.thickened_area,
+                                  " mm² of it, too thin to be filled, became walls of ",
+                                  2.0 * kThickening, " mm"));
     changes.push_back(join_text(
-        "made anew around what it encloses", thickened ? ", thicker so that thin parts stay," : "",
-        " since ", refusal, "; at most ", rebuilt.largest_move,
+        "made anew around what it encloses since ", refusal, "; at most ", rebuilt.largest_move,
         " mm from where it was; what is left out reached ", rebuilt.largest_loss, " mm farther"));
     return rebuilt.mesh;
   } catch (const Error& error) {

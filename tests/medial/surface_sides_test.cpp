@@ -32,6 +32,33 @@ TEST(SurfaceSides, OfAWalledShellAreItsInnerAndOuterFace) {
   EXPECT_GT(sides.sheetness, 0.9);
 }
 
+TEST(SurfaceSides, OfManyTrianglesAreThoseOfACoarserSurface) {
+  const TriMesh fine = test::lunate_shell(25.0, 1.6, radians(230.0), radians(45.0), 300, 60);
+  ASSERT_GT(fine.n_triangles(), 60000);
+  const SurfaceSides sides = split_sides(fine);
+  Index counts[2][2] = {};  // outer or inner face, first side or not
+  for (Index t = 0; t < fine.n_triangles(); ++t) {
+    double r = 0.0;
+    for (int k = 0; k < 3; ++k) r += fine.points.row(fine.triangles(t, k)).norm() / 3.0;
+    if (r > 25.01 && r < 26.59) continue;  // a wall
+    ++counts[r > 26.0][sides.labels[static_cast<std::size_t>(t)] == SideLabel::first];
+  }
+  const Index agree = std::max(counts[0][0] + counts[1][1], counts[0][1] + counts[1][0]);
+  EXPECT_GT(agree, 0.97 * fine.n_triangles());
+  EXPECT_GT(sides.sheetness, 0.9);
+}
+
+TEST(SurfaceSides, FaceEachOtherByNoMoreThanTheBound) {
+  for (const TriMesh& body : {test::lunate_shell(), test::torus(), test::icosphere(3, 5.0)}) {
+    const FacingBound bound = facing_bound(body);
+    const SurfaceSides sides = split_sides(body);
+    EXPECT_LE(sides.sheetness, bound.sheetness + 1e-12);
+    EXPECT_EQ(sides.relative_thickness, bound.relative_thickness);
+  }
+  EXPECT_LT(facing_bound(test::lunate_shell()).relative_thickness, 0.1);
+  EXPECT_GT(facing_bound(test::icosphere(3, 5.0)).relative_thickness, 0.5);
+}
+
 TEST(SurfaceSides, GiveTheThicknessAlongTheInwardNormal) {
   const TriMesh shell = test::lunate_shell(25.0, 1.6);
   const SurfaceSides sides = split_sides(shell);

@@ -11,16 +11,17 @@ struct RebuildOptions {
   double smoothing =
       0.0;  ///< mm, >= 0: standard deviation of a Gaussian over the distances, which rounds rims
             ///< and evens what is rougher; walls three times as thick hardly move
-  double thickening = 0.0;   ///< mm, >= 0: the surface is moved outwards by this, which keeps walls
-                             ///< thinner than the spacing
+  double thickening = 0.0;  ///< mm, >= 0: parts of the old surface that would be left out, thinner
+                            ///< than the grid can see, become walls with this on both sides of them
   double target_edge = 0.8;  ///< mm, > 0
   double max_move = 1.0;  ///< mm, >= 0. Refused where the new surface is farther from the old one.
 };
 
 struct Rebuilt {
   TriMesh mesh;
-  double largest_move = 0.0;  ///< mm, largest distance of the new surface from the old one
-  double largest_loss = 0.0;  ///< mm, how far the old surface reaches out of the new one at most
+  double largest_move = 0.0;    ///< mm, largest distance of the new surface from the old one
+  double largest_loss = 0.0;    ///< mm, how far the old surface reaches out of the new one at most
+  double thickened_area = 0.0;  ///< mm², of the old surface where walls were made of it
 };
 
 /// A new closed surface around whatever the old one encloses: for surfaces that `repair` refuses.
