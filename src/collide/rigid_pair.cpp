@@ -17,15 +17,19 @@ Clearance nearer(Clearance a, const Clearance& b) { return b.distance < a.distan
 
 Clearance swapped(const Clearance& c) { return {c.distance, c.moving_point, c.fixed_point}; }
 
-/// Least signed distance of the points to the surface of `tree`, all in the frame of `tree`.
-Clearance least_distance(const Points& points, const TriangleTree& tree, double limit,
-                         const std::function<bool(Index vertex, Index triangle)>& counts) {
+/// Least signed distance of the points to the surface of `tree`, all in the frame of `tree`; of
+/// points and nearest triangles that count.
+template <class PointCounts, class TriangleCounts>
+Clearance least_distance(const Points& points, const PointCounts& point_counts,
+                         const TriangleTree& tree, const TriangleCounts& triangle_counts,
+                         double limit) {
   return parallel_reduce(
       points.rows(), Clearance{},
       [&](Index v) {
+        if (!point_counts(v)) return Clearance{};
         const Vec3 p = points.row(v);
         const auto nearest = tree.nearest_within(p, limit);
-        if (!nearest || !counts(v, nearest->triangle)) return Clearance{};
+        if (!nearest || !triangle_counts(nearest->triangle)) return Clearance{};
         const double distance = std::sqrt(nearest->squared_distance) * tree.sign_at(p, *nearest);
         return Clearance{distance, nearest->point, p};
       },
@@ -45,18 +49,18 @@ RigidPair::RigidPair(const TriMesh& fixed, const TriMesh& moving, std::vector<bo
 
 Clearance RigidPair::clearance(const RigidTransform& X, double limit) const {
   require(limit > 0.0, "clearance limit must be positive, got ", limit, " mm");
+  const auto every = [](Index) { return true; };
+  const auto vertex_counts = [&](Index v) { return bool{counted_[static_cast<std::size_t>(v)]}; };
   const Clearance of_moving =
-      least_distance(transformed(moving_.points(), X), fixed_, limit,
-                     [&](Index v, Index) { return bool{counted_[static_cast<std::size_t>(v)]}; });
+      least_distance(transformed(moving_.points(), X), vertex_counts, fixed_, every, limit);
 
   // the fixed vertices, seen from the moving surface; a triangle counts when all its corners do
-  const auto triangle_counts = [&](Index, Index triangle) {
+  const auto triangle_counts = [&](Index triangle) {
     const auto corners = moving_.triangles().row(triangle);
-    return std::all_of(corners.begin(), corners.end(),
-                       [&](Index v) { return bool{counted_[static_cast<std::size_t>(v)]}; });
+    return std::all_of(corners.begin(), corners.end(), vertex_counts);
   };
-  Clearance of_fixed =
-      least_distance(transformed(fixed_.points(), X.inverse()), moving_, limit, triangle_counts);
+  Clearance of_fixed = least_distance(transformed(fixed_.points(), X.inverse()), every, moving_,
+                                      triangle_counts, limit);
   of_fixed.fixed_point = X * of_fixed.fixed_point;
   of_fixed.moving_point = X * of_fixed.moving_point;
   return nearer(of_moving, swapped(of_fixed));

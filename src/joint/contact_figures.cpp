@@ -1,5 +1,6 @@
 #include <coxa/core/parallel.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,8 +16,8 @@ constexpr double kHigh = 0.5;
 
 }  // namespace
 
-std::vector<collide::ContactSample> samples_in_contact(const HipSystem& system,
-                                                       const HipState& state) {
+std::vector<collide::ContactSample> samples_in_contact(
+    const HipSystem& system, const HipState& state, std::vector<collide::ContactSample> samples) {
   const collide::SurfaceContact& contact = state.contact.cartilages();
   VecX overlap = VecX::Zero(contact.slave().n_vertices());
   for (const collide::ContactConstraint& constraint : contact.constraints()) {
@@ -24,7 +25,6 @@ std::vector<collide::ContactSample> samples_in_contact(const HipSystem& system,
     overlap[constraint.owner] =
         p > 0.0 ? p / system.foundation_stiffness() : -contact.gap(constraint, state.x);
   }
-  std::vector<collide::ContactSample> samples = contact.samples(state.x);
   std::erase_if(samples, [&](const collide::ContactSample& sample) {
     double sum = 0.0;
     for (int k = 0; k < 3; ++k) {
@@ -36,28 +36,42 @@ std::vector<collide::ContactSample> samples_in_contact(const HipSystem& system,
 }
 
 double pressure_percentile(const std::vector<collide::ContactSample>& samples, double share) {
-  std::vector<collide::ContactSample> sorted = samples;
+  std::vector<std::pair<double, double>> sorted;  // pressure, area
+  for (const auto& sample : samples) sorted.emplace_back(sample.pressure, sample.area);
   std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const auto& a, const auto& b) { return a.pressure < b.pressure; });
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   double total = 0.0, below = 0.0;
-  for (const auto& sample : sorted) total += sample.area;
-  for (const auto& sample : sorted) {
-    below += sample.area;
-    if (below >= share * total) return sample.pressure;
+  for (const auto& [pressure, area] : sorted) total += area;
+  for (const auto& [pressure, area] : sorted) {
+    below += area;
+    if (below >= share * total) return pressure;
   }
-  return sorted.empty() ? 0.0 : sorted.back().pressure;
+  return sorted.empty() ? 0.0 : sorted.back().first;
 }
 
 double patch_peak(const std::vector<collide::ContactSample>& samples, double area) {
-  // samples by cells as wide as the disc's radius, so that 27 cells hold all that a disc can
   const double radius = std::sqrt(area / kPi);
+  double largest = 0.0;
+  for (const auto& sample : samples) largest = std::max(largest, sample.pressure);
+  const auto is_high = [&](const collide::ContactSample& sample) {
+    return sample.pressure > 0.0 && sample.pressure >= kHigh * largest;
+  };
+  Eigen::AlignedBox3d within;  // of all that the discs can cover
+  for (const auto& sample : samples) {
+    if (is_high(sample)) within.extend(sample.point);
+  }
+  within = {within.min().array() - radius, within.max().array() + radius};
+
+  // samples by cells as wide as the disc's radius, so that 27 cells hold all that a disc can
   using Cell = std::array<std::int64_t, 3>;
   const auto cell_of = [&](const Vec3& point) {
     return Cell{std::llround(point[0] / radius), std::llround(point[1] / radius),
                 std::llround(point[2] / radius)};
   };
   std::vector<std::pair<Cell, std::size_t>> order;
-  for (std::size_t s = 0; s < samples.size(); ++s) order.emplace_back(cell_of(samples[s].point), s);
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    if (within.contains(samples[s].point)) order.emplace_back(cell_of(samples[s].point), s);
+  }
   std::sort(order.begin(), order.end());
 
   const auto mean_around = [&](const Vec3& centre) {
@@ -79,14 +93,11 @@ double patch_peak(const std::vector<collide::ContactSample>& samples, double are
     // where the surface ends within the disc, the rest of the patch carries nothing
     return force / std::max(covered, 0.75 * area);
   };
-  double largest = 0.0;
-  for (const auto& sample : samples) largest = std::max(largest, sample.pressure);
   return parallel_reduce(
       static_cast<std::int64_t>(samples.size()), 0.0,
       [&](Index s) {
         const auto& sample = samples[static_cast<std::size_t>(s)];
-        const bool high = sample.pressure > 0.0 && sample.pressure >= kHigh * largest;
-        return high ? mean_around(sample.point) : 0.0;
+        return is_high(sample) ? mean_around(sample.point) : 0.0;
       },
       [](double a, double b) { return std::max(a, b); });
 }

@@ -72,7 +72,7 @@ void fill_head_nodes(FrameResult& frame, const JointModel& model, const HipSyste
     if (push == 0.0) return;
     for (Index k = constraint.first; k < constraint.last; ++k) {
       const Index particle = contact.stencil_particles()[static_cast<std::size_t>(k)];
-      if (particle < system.n_acetabular() || particle == system.translation()) continue;
+      if (particle < system.n_acetabular() || particle >= system.translation()) continue;
       force[particle - system.n_acetabular()] +=
           push * contact.stencil_vectors()[static_cast<std::size_t>(k)].norm();
     }
@@ -127,26 +127,26 @@ ElementStrains element_strains(const fem::ElasticForce& elasticity, const VecX& 
   return strains;
 }
 
-template <std::size_t N>
-void fill_sectors(std::array<SectorFigures, N>& sectors, const JointModel& model,
+/// Regions are two hours wide, the first around twelve.
+std::size_t region_of(double hour) { return static_cast<std::size_t>((hour + 1.0) / 2.0) % 6; }
+std::size_t sector_of(double hour) { return static_cast<std::size_t>(std::lround(hour)) % 12; }
+
+template <std::size_t N, class PartOf>
+void fill_sectors(std::array<SectorFigures, N>& sectors, const SocketElements& elements,
                   const ElementStrains& strains, const std::vector<collide::ContactSample>& samples,
-                  const std::function<std::size_t(const Vec3&)>& sector_of) {
-  const TetMesh& mesh = model.acetabular_cartilage;
+                  const VecX& sample_hours, const PartOf& part_of) {
   std::array<double, N> strain{}, compression{}, area{}, force{};
-  for (Index t = 0; t < mesh.n_tets(); ++t) {
-    const Points corners = mesh.points(mesh.tets.row(t), Eigen::all);
-    const std::size_t sector = sector_of(corners.colwise().mean().transpose());
-    Mat3 edges;
-    for (int k = 0; k < 3; ++k) edges.col(k) = (corners.row(k + 1) - corners.row(0)).transpose();
-    const double volume = edges.determinant() / 6.0;
-    sectors[sector].volume += volume;
-    strain[sector] += volume * strains.effective[t];
-    compression[sector] += volume * strains.least[t];
+  for (Eigen::Index t = 0; t < elements.hour.size(); ++t) {
+    const std::size_t part = part_of(elements.hour[t]);
+    const double volume = elements.volume[t];
+    sectors[part].volume += volume;
+    strain[part] += volume * strains.effective[t];
+    compression[part] += volume * strains.least[t];
   }
-  for (const collide::ContactSample& sample : samples) {
-    const std::size_t sector = sector_of(sample.point);
-    area[sector] += sample.area;
-    force[sector] += sample.area * sample.pressure;
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const std::size_t part = part_of(sample_hours[static_cast<Eigen::Index>(s)]);
+    area[part] += samples[s].area;
+    force[part] += samples[s].area * samples[s].pressure;
   }
   for (std::size_t s = 0; s < N; ++s) {
     if (sectors[s].volume > 0.0) {
@@ -172,6 +172,19 @@ void find_crushed(CrushFigures& crush, const TetMesh& mesh, const fem::ElasticFo
 
 }  // namespace
 
+SocketElements socket_elements(const JointModel& model) {
+  const TetMesh& mesh = model.acetabular_cartilage;
+  SocketElements elements{socket_clock(model), VecX(mesh.n_tets()), VecX(mesh.n_tets())};
+  for (Index t = 0; t < mesh.n_tets(); ++t) {
+    const Points corners = mesh.points(mesh.tets.row(t), Eigen::all);
+    elements.hour[t] = elements.clock.hour(corners.colwise().mean().transpose());
+    Mat3 edges;
+    for (int k = 0; k < 3; ++k) edges.col(k) = (corners.row(k + 1) - corners.row(0)).transpose();
+    elements.volume[t] = edges.determinant() / 6.0;
+  }
+  return elements;
+}
+
 Reactions bone_reactions(const HipSystem& system, const VecX& force) {
   Reactions reactions;
   for (const Index i : system.socket_nodes()) reactions.socket += force.segment<3>(3 * i);
@@ -180,11 +193,12 @@ Reactions bone_reactions(const HipSystem& system, const VecX& force) {
 }
 
 void update_figures(FrameResult& frame, const JointModel& model, const HipSystem& system,
-                    Equilibrium& equilibrium, const HipState& state, const ClockFace& clock) {
+                    Equilibrium& equilibrium, const HipState& state,
+                    const SocketElements& elements) {
   const collide::SurfaceContact& cartilages = state.contact.cartilages();
   const std::vector<collide::ContactSample> samples = cartilages.samples(state.x);
   fill_displacements(frame, model, system, state);
-  fill_contact(frame, samples, samples_in_contact(system, state), clock);
+  fill_contact(frame, samples, samples_in_contact(system, state, samples), elements.clock);
   fill_socket_nodes(frame, cartilages, samples, system.n_acetabular());
   fill_head_nodes(frame, model, system, state);
 
@@ -213,12 +227,12 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
   find_crushed(frame.crush, model.femoral_cartilage, system.femur_elasticity(), state.x, true);
 
   const ElementStrains strains = element_strains(system.socket_elasticity(), state.x);
-  fill_sectors(frame.sectors, model, strains, samples,
-               [&](const Vec3& p) { return static_cast<std::size_t>(clock.sector(p)); });
-  // regions are two hours wide, the first around twelve
-  fill_sectors(frame.regions, model, strains, samples, [&](const Vec3& p) {
-    return static_cast<std::size_t>(std::floor((clock.hour(p) + 1.0) / 2.0)) % 6;
+  VecX hours(static_cast<Eigen::Index>(samples.size()));
+  parallel_for(hours.size(), [&](Index s) {
+    hours[s] = elements.clock.hour(samples[static_cast<std::size_t>(s)].point);
   });
+  fill_sectors(frame.sectors, elements, strains, samples, hours, sector_of);
+  fill_sectors(frame.regions, elements, strains, samples, hours, region_of);
 }
 
 }  // namespace coxa::joint

@@ -6,15 +6,26 @@
 
 namespace coxa::joint {
 
+/// The elements of the socket's cartilage on the clock face, at rest.
+struct SocketElements {
+  ClockFace clock;
+  VecX hour;    ///< of their middles
+  VecX volume;  ///< mm³
+};
+SocketElements socket_elements(const JointModel& model);
+
 /// Fills what a converged frame reports: nodal fields, contact, balance, sectors.
 void update_figures(FrameResult& frame, const JointModel& model, const HipSystem& system,
-                    Equilibrium& equilibrium, const HipState& state, const ClockFace& clock);
+                    Equilibrium& equilibrium, const HipState& state,
+                    const SocketElements& elements);
 
 /// The samples in contact. Where it ends between two nodes is told by what the rigid bodies would
 /// overlap there: inside the pressure over the foundation's stiffness, outside minus the gap, and
 /// linear between nodes.
+/// @param samples  all of the cartilages' contact at the state
 std::vector<collide::ContactSample> samples_in_contact(const HipSystem& system,
-                                                       const HipState& state);
+                                                       const HipState& state,
+                                                       std::vector<collide::ContactSample> samples);
 
 /// Pressure below which `share` of the samples' area lies, MPa; 0 without samples.
 double pressure_percentile(const std::vector<collide::ContactSample>& samples, double share);

@@ -29,7 +29,7 @@ struct LiveHip::Impl {
   HipSystem system;
   BoneLimit limit;
   Equilibrium rough_equilibrium, exact_equilibrium;
-  ClockFace clock;
+  SocketElements elements;
   HipState state;
   Predictor predictor;
 
@@ -42,7 +42,7 @@ struct LiveHip::Impl {
         limit(hip),
         rough_equilibrium(system, mode, rough),
         exact_equilibrium(system, mode, exact),
-        clock(socket_clock(hip)),
+        elements(socket_elements(hip)),
         state{system.reference(),
               {},
               system.make_contact(exact.contact_stiffness, exact.max_translation)} {}
@@ -100,7 +100,7 @@ FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
   if (settling.converged) {
     frame.translation = found();
     frame.balance.applied_force = force;
-    update_figures(frame, model, system, equilibrium, state, clock);
+    update_figures(frame, model, system, equilibrium, state, elements);
   }
   frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return frame;

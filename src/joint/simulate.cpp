@@ -76,6 +76,7 @@ class Simulation {
         system_(model),
         march_(system_, load.mode, options),
         limit_(model),
+        elements_(socket_elements(model)),
         state_{system_.reference(),
                {},
                system_.make_contact(options.contact_stiffness, options.max_translation)} {}
@@ -103,6 +104,7 @@ class Simulation {
   HipSystem system_;
   March march_;
   BoneLimit limit_;
+  SocketElements elements_;
   HipState state_;
   BonePose previous_;     // of the frame before, solved or not
   std::string unseated_;  // why the head could not be seated at all
@@ -163,7 +165,7 @@ void Simulation::run_frame(FrameResult& frame) {
       frame.translation = target.shift + found();
       frame.balance.applied_force = force(frame.frame);
       frame.balance.work = march_.work();
-      update_figures(frame, model_, system_, march_.equilibrium(), state_, result_.clock);
+      update_figures(frame, model_, system_, march_.equilibrium(), state_, elements_);
       if (frame.crush.least_volume_ratio <= 0.0) frame = without_result(frame);
     }
   }
@@ -189,8 +191,11 @@ void Simulation::find_sensitivity() {
       BonePose target = state.pose;
       target.shift += (side == 0 ? -1.0 : 1.0) * sensitivity.shift * model_.X_IP.R.col(axis);
       const Settling settling = held.advance(state, target, Vec3::Constant(kNaN), monitor_);
+      sensitivity.peak(axis, side) = kNaN;
+      if (!settling.converged) continue;
+      auto samples = state.contact.cartilages().samples(state.x);
       sensitivity.peak(axis, side) =
-          settling.converged ? pressure_percentile(samples_in_contact(system_, state), 0.99) : kNaN;
+          pressure_percentile(samples_in_contact(system_, state, std::move(samples)), 0.99);
     }
   }
   result_.sensitivity = sensitivity;
@@ -201,7 +206,7 @@ JointResult Simulation::run() {
   const TriMesh articular{model_.acetabular_cartilage.points,
                           facets_with(model_.acetabular_cartilage, FacetTag::articular_side)};
   result_.articular_area = area(articular);
-  result_.clock = socket_clock(model_);
+  result_.clock = elements_.clock;
   result_.load_description = load_.description;
   if (load_.mode == LoadMode::force) unseated_ = march_.equilibrium().seat(state_, force(0));
 
