@@ -28,7 +28,7 @@ constexpr double kStalePairs = 0.03;
 // residual tolerance is tightened no further than by this for the sake of the net force
 constexpr double kFinestNewton = 0.03;
 // while a state settles, nodes of wider gaps than this are left alone, mm
-constexpr double kReach = 0.5;
+constexpr double kReach = 0.2;
 // a state that is only passed through may be so much less exact, one led by hand still less: a
 // fiftieth of the joint force is left to the next step
 constexpr double kSlackOnTheWay = 20.0, kSlackByHand = 100.0, kOverlapSlack = 10.0;
@@ -161,7 +161,12 @@ std::string Equilibrium::seat(HipState& state, const Vec3& force) const {
       pull += p * constraint.area * slope;
       stiffness += contact.stiffness() * constraint.area * slope * slope.transpose();
     });
-    if (stiffness.trace() == 0.0) {
+    const bool apart = stiffness.trace() == 0.0;
+    if (system_.ligaments()) {
+      pull += system_.ligaments()->pull(state.x);
+      stiffness += system_.ligaments()->stiffness(state.x);
+    }
+    if (apart) {
       const Vec3 before = state.x.segment<3>(t);
       reason = touch(state, force.normalized());
       if (!reason.empty()) break;

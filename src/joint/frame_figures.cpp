@@ -62,6 +62,16 @@ void fill_socket_nodes(FrameResult& frame, const collide::SurfaceContact& contac
   }
 }
 
+/// Adds what bare femur presses with on the socket's nodes.
+void add_bare_femur(FrameResult& frame, const HipContact& hip, const VecX& x) {
+  if (!hip.femur()) return;
+  for (const collide::ContactConstraint& constraint : hip.femur()->constraints()) {
+    const auto vertex = static_cast<std::size_t>(constraint.owner);
+    frame.acetabular_pressure[hip.femur()->slave().particle[vertex]] +=
+        hip.femur()->pressure(constraint, x);
+  }
+}
+
 /// Pressures of the head's nodes: the forces they receive over the area around them.
 void fill_head_nodes(FrameResult& frame, const JointModel& model, const HipSystem& system,
                      const HipState& state) {
@@ -200,6 +210,7 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
   fill_displacements(frame, model, system, state);
   fill_contact(frame, samples, samples_in_contact(system, state, samples), elements.clock);
   fill_socket_nodes(frame, cartilages, samples, system.n_acetabular());
+  add_bare_femur(frame, state.contact, state.x);
   fill_head_nodes(frame, model, system, state);
 
   BalanceFigures& balance = frame.balance;
@@ -209,18 +220,24 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
   balance.elastic_energy = equilibrium.elastic_energy(state);
   balance.contact_force = state.contact.force(state.x);
   balance.force_on_bone = state.contact.force_on_bone(state.x);
+  balance.force_of_femur = state.contact.force_of_femur(state.x);
+  if (system.ligaments()) {
+    balance.ligament_force = system.ligaments()->pull(state.x);
+    frame.ligament_tension = system.ligaments()->tensions(state.x);
+  }
   frame.contact.penetration = state.contact.penetration(state.x);
   state.contact.for_each_constraint([&](const auto& contact, const auto& constraint) {
     const double gap = std::min(0.0, contact.gap(constraint, state.x));
     balance.contact_energy += 0.5 * contact.stiffness(constraint) * constraint.area * gap * gap;
   });
   if (const double size = balance.contact_force.norm(); size > 0.0) {
-    const Vec3 left = reactions.socket + balance.force_on_bone + reactions.femur;
+    const Vec3 left =
+        reactions.socket + balance.force_on_bone + reactions.femur - balance.force_of_femur;
     balance.reaction_error = left.norm() / size;
   }
   if (balance.applied_force.allFinite()) {
-    balance.force_error =
-        (balance.contact_force - balance.applied_force).norm() / balance.applied_force.norm();
+    const Vec3 left = balance.contact_force - balance.applied_force - balance.ligament_force;
+    balance.force_error = left.norm() / balance.applied_force.norm();
   }
 
   find_crushed(frame.crush, model.acetabular_cartilage, system.socket_elasticity(), state.x, false);

@@ -18,37 +18,35 @@ Vec3 force_on_slave(const collide::SurfaceContact& contact, const VecX& x) {
 }  // namespace
 
 void HipContact::update_pairs(const VecX& x, double reach) {
-  cartilages_.update_pairs(x, reach);
-  if (bone_) bone_->update_pairs(x, reach);
+  for_each(*this, [&](collide::SurfaceContact& contact) { contact.update_pairs(x, reach); });
 }
 
 void HipContact::update_multipliers(const VecX& x, double tolerance) {
-  cartilages_.update_multipliers(x, tolerance);
-  if (bone_) bone_->update_multipliers(x, tolerance);
+  for_each(*this,
+           [&](collide::SurfaceContact& contact) { contact.update_multipliers(x, tolerance); });
 }
 
 void HipContact::clear_stiffening() {
-  cartilages_.clear_stiffening();
-  if (bone_) bone_->clear_stiffening();
+  for_each(*this, [](collide::SurfaceContact& contact) { contact.clear_stiffening(); });
 }
 
 void HipContact::clear_multipliers() {
-  cartilages_.clear_multipliers();
-  if (bone_) bone_->clear_multipliers();
+  for_each(*this, [](collide::SurfaceContact& contact) { contact.clear_multipliers(); });
 }
 
 void HipContact::update_stiffness(double stiffness) {
-  cartilages_.update_stiffness(stiffness);
-  if (bone_) bone_->update_stiffness(stiffness);
+  for_each(*this, [&](collide::SurfaceContact& contact) { contact.update_stiffness(stiffness); });
 }
 
 void HipContact::add_force(const VecX& x, VecX& force) const {
-  cartilages_.add_force(x, VecX(), force);
-  if (bone_) bone_->add_force(x, VecX(), force);
+  for_each(*this,
+           [&](const collide::SurfaceContact& contact) { contact.add_force(x, VecX(), force); });
 }
 
 double HipContact::energy(const VecX& x) const {
-  return cartilages_.energy(x) + (bone_ ? bone_->energy(x) : 0.0);
+  double sum = 0.0;
+  for_each(*this, [&](const collide::SurfaceContact& contact) { sum += contact.energy(x); });
+  return sum;
 }
 
 double HipContact::penetration(const VecX& x) const {
@@ -59,10 +57,18 @@ double HipContact::penetration(const VecX& x) const {
   return deepest;
 }
 
+Vec3 HipContact::force(const VecX& x) const {
+  return force_on_cartilage(x) + force_on_bone(x) + force_of_femur(x);
+}
+
 Vec3 HipContact::force_on_cartilage(const VecX& x) const { return force_on_slave(cartilages_, x); }
 
 Vec3 HipContact::force_on_bone(const VecX& x) const {
   return bone_ ? Vec3(-force_on_slave(*bone_, x)) : Vec3(Vec3::Zero());
+}
+
+Vec3 HipContact::force_of_femur(const VecX& x) const {
+  return femur_ ? force_on_slave(*femur_, x) : Vec3(Vec3::Zero());
 }
 
 }  // namespace coxa::joint

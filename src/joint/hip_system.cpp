@@ -14,7 +14,9 @@ namespace {
 constexpr double kSearchDistance = 4.0;
 // bare bone is rarely reached and never deep: most of the femoral cartilage has none so near, mm
 constexpr double kBoneSearch = 1.5;
-// both only where they face each other: not at all beyond about 80 degrees, fully within 60
+// bare femur farther out than the socket's cartilage by more than this is never reached, mm
+constexpr double kFemurReach = 10.0;
+// all only where they face each other: not at all beyond about 80 degrees, fully within 60
 constexpr double kFacing = 0.2, kFacingFully = 0.5;
 
 std::vector<Index> nodes_of(const Triangles& facets, Index first) {
@@ -36,7 +38,16 @@ double mean_thickness(const TetMesh& mesh) {
   return volume / area({mesh.points, facets_with(mesh, FacetTag::articular_side)});
 }
 
-/// The femoral articular side as particles: every vertex also follows the translation.
+/// Largest distance of a node of the facets from a point, mm.
+double radius_about(const Vec3& centre, const TetMesh& mesh, const Triangles& facets) {
+  double radius = 0.0;
+  for (const Index node : nodes_of(facets, 0)) {
+    radius = std::max(radius, (mesh.points.row(node).transpose() - centre).norm());
+  }
+  return radius;
+}
+
+/// A surface of the femur as particles: every vertex also follows the translation.
 collide::ParticleSurface carried(const Triangles& femoral, Index first, Index translation) {
   const auto head = collide::make_particle_surface((femoral.array() + first).matrix());
   collide::ParticleSurface surface;
@@ -84,6 +95,34 @@ HipSystem::HipSystem(const JointModel& model)
   const double confined_modulus = E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
   foundation_stiffness_ = confined_modulus / (mean_thickness(model.acetabular_cartilage) +
                                               mean_thickness(model.femoral_cartilage));
+  if (model.bare_bone == BareBone::both) add_bare_femur();
+  if (!model.ligaments.empty()) add_ligaments();
+}
+
+void HipSystem::add_bare_femur() {
+  const Triangles socket = facets_with(model_.acetabular_cartilage, FacetTag::articular_side);
+  const double radius = radius_about(centre_, model_.acetabular_cartilage, socket);
+  const TriMesh near = part_within(model_.femur, centre_, radius + kFemurReach);
+  const std::vector<Index> kept = nodes_of(near.triangles, 0);
+  femur_points_ = near.points(kept, Eigen::all);
+  bare_femur_ = near.triangles;
+  for (Index& vertex : bare_femur_.reshaped()) {
+    vertex = static_cast<Index>(std::lower_bound(kept.begin(), kept.end(), vertex) - kept.begin());
+  }
+}
+
+void HipSystem::add_ligaments() {
+  const auto first = femur_points_.rows();
+  const auto n = static_cast<Eigen::Index>(model_.ligaments.size());
+  femur_points_.conservativeResize(first + n + 1, 3);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    femur_points_.row(first + k) =
+        model_.ligaments[static_cast<std::size_t>(k)].insertion.transpose();
+  }
+  femur_points_.row(first + n) = centre_.transpose();
+  const Index insertions = first_femur_point() + static_cast<Index>(first);
+  ligaments_.emplace(model_.ligaments, insertions, insertions + static_cast<Index>(n),
+                     translation());
 }
 
 VecX HipSystem::reference() const {
@@ -93,6 +132,9 @@ VecX HipSystem::reference() const {
   }
   for (Index i = 0; i < n_femoral_; ++i) {
     x.segment<3>(3 * (n_acetabular_ + i)) = model_.femoral_cartilage.points.row(i).transpose();
+  }
+  for (Index i = 0; i < static_cast<Index>(femur_points_.rows()); ++i) {
+    x.segment<3>(3 * (first_femur_point() + i)) = femur_points_.row(i).transpose();
   }
   return x;
 }
@@ -108,10 +150,15 @@ void HipSystem::update_pose(VecX& x, const BonePose& from, const BonePose& to) c
     const Vec3 X = model_.femoral_cartilage.points.row(i - n_acetabular_);
     x.segment<3>(3 * i) = centre_ + to.shift + to.R * (X - centre_);
   }
+  for (Index i = 0; i < static_cast<Index>(femur_points_.rows()); ++i) {
+    const Vec3 X = femur_points_.row(i);
+    x.segment<3>(3 * (first_femur_point() + i)) = centre_ + to.shift + to.R * (X - centre_);
+  }
 }
 
 HipContact HipSystem::make_contact(double stiffness, double reach) const {
-  return {make_cartilage_contact(stiffness), make_bone_contact(stiffness, reach)};
+  return {make_cartilage_contact(stiffness), make_bone_contact(stiffness, reach),
+          make_femur_contact(stiffness)};
 }
 
 collide::SurfaceContact HipSystem::make_cartilage_contact(double stiffness) const {
@@ -138,11 +185,7 @@ collide::SurfaceContact HipSystem::make_cartilage_contact(double stiffness) cons
 std::optional<collide::SurfaceContact> HipSystem::make_bone_contact(double stiffness,
                                                                     double reach) const {
   const Triangles femoral = facets_with(model_.femoral_cartilage, FacetTag::articular_side);
-  double radius = 0.0;
-  for (const Index node : nodes_of(femoral, 0)) {
-    const Vec3 arm = model_.femoral_cartilage.points.row(node).transpose() - centre_;
-    radius = std::max(radius, arm.norm());
-  }
+  const double radius = radius_about(centre_, model_.femoral_cartilage, femoral);
   TriMesh bone = part_within(model_.hip_bone, centre_, radius + kBoneSearch + reach);
   if (bone.empty()) return std::nullopt;
   return collide::SurfaceContact(carried(femoral, n_acetabular_, translation()), std::move(bone),
@@ -154,10 +197,26 @@ std::optional<collide::SurfaceContact> HipSystem::make_bone_contact(double stiff
                                   .rule = collide::ContactRule::nodal});
 }
 
+std::optional<collide::SurfaceContact> HipSystem::make_femur_contact(double stiffness) const {
+  if (bare_femur_.rows() == 0) return std::nullopt;
+  const Triangles socket = facets_with(model_.acetabular_cartilage, FacetTag::articular_side);
+  collide::SurfaceContact contact(collide::make_particle_surface(socket),
+                                  carried(bare_femur_, first_femur_point(), translation()),
+                                  {.stiffness = stiffness,
+                                   .search_distance = kBoneSearch,
+                                   .facing = kFacing,
+                                   .facing_fully = kFacingFully,
+                                   .normal = collide::ContactNormal::smooth,
+                                   .rule = collide::ContactRule::nodal});
+  contact.update_curvature(reference());
+  return contact;
+}
+
 std::vector<const dynamics::Force*> HipSystem::elastic() const {
   std::vector<const dynamics::Force*> forces = socket_elasticity_.forces();
   const auto others = femur_elasticity_.forces();
   forces.insert(forces.end(), others.begin(), others.end());
+  if (ligaments_) forces.push_back(&*ligaments_);
   return forces;
 }
 
@@ -165,6 +224,10 @@ VecX HipSystem::elastic_force(const VecX& x, double& energy) const {
   VecX force = VecX::Zero(x.size());
   energy = socket_elasticity_.add_force_with_energy(x, force);
   energy += femur_elasticity_.add_force_with_energy(x, force);
+  if (ligaments_) {
+    ligaments_->add_force(x, VecX(), force);
+    energy += ligaments_->energy(x);
+  }
   return force;
 }
 
@@ -172,6 +235,7 @@ std::vector<bool> HipSystem::free_particles(LoadMode mode) const {
   std::vector<bool> free(static_cast<std::size_t>(n_particles()), true);
   for (const Index i : socket_nodes_) free[static_cast<std::size_t>(i)] = false;
   for (const Index i : femur_nodes_) free[static_cast<std::size_t>(i)] = false;
+  std::fill(free.begin() + first_femur_point(), free.end(), false);
   if (mode == LoadMode::prescribed_pose) free[static_cast<std::size_t>(translation())] = false;
   return free;
 }

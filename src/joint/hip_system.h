@@ -8,6 +8,7 @@
 
 #include "elasticity.h"
 #include "hip_contact.h"
+#include "ligament_force.h"
 
 namespace coxa::joint {
 
@@ -25,7 +26,10 @@ BonePose between(const BonePose& a, const BonePose& b, double s);
 /// t.
 ///
 /// Femoral nodes are stored without t (elasticity does not feel it); their true position is y + t.
-/// So t is felt by contact alone, through its weight 1 in every femoral surface vertex.
+/// So t is felt by contact, through its weight 1 in every femoral surface vertex, and by ligaments.
+/// After t come points of the rigid femur where they are needed, stored like femoral nodes and
+/// held: vertices of its surface that the socket's cartilage may touch, the ligaments' insertions,
+/// the joint centre.
 class HipSystem {
  public:
   /// @note keeps a reference to the model, which must outlive it
@@ -34,7 +38,7 @@ class HipSystem {
   Index n_acetabular() const { return n_acetabular_; }
   Index n_femoral() const { return n_femoral_; }
   Index translation() const { return n_acetabular_ + n_femoral_; }  ///< its particle
-  Index n_particles() const { return translation() + 1; }
+  Index n_particles() const { return translation() + 1 + static_cast<Index>(femur_points_.rows()); }
   const Vec3& centre() const { return centre_; }
 
   VecX reference() const;  ///< positions in the image pose, t = 0
@@ -43,11 +47,13 @@ class HipSystem {
 
   /// @param reach  how far the head may move, mm: bone farther than that is left out
   HipContact make_contact(double stiffness, double reach) const;
+  /// Forces of cartilages and ligaments.
   std::vector<const dynamics::Force*> elastic() const;
-  /// Elastic force of both cartilages at x on all particles, N; sets their energy, N·mm.
+  /// Their sum at x on all particles, N; sets their energy, N·mm.
   VecX elastic_force(const VecX& x, double& energy) const;
   const fem::ElasticForce& socket_elasticity() const { return socket_elasticity_.by_element(); }
   const fem::ElasticForce& femur_elasticity() const { return femur_elasticity_.by_element(); }
+  const std::optional<LigamentForce>& ligaments() const { return ligaments_; }
   /// Particles that may move; t only when it is free.
   std::vector<bool> free_particles(LoadMode mode) const;
   /// Held nodes of the acetabular and of the femoral bone side.
@@ -61,12 +67,19 @@ class HipSystem {
  private:
   collide::SurfaceContact make_cartilage_contact(double stiffness) const;
   std::optional<collide::SurfaceContact> make_bone_contact(double stiffness, double reach) const;
+  std::optional<collide::SurfaceContact> make_femur_contact(double stiffness) const;
+  void add_bare_femur();
+  void add_ligaments();
+  Index first_femur_point() const { return translation() + 1; }
 
   const JointModel& model_;
   Index n_acetabular_, n_femoral_;
   Vec3 centre_;
   std::vector<Index> socket_nodes_, femur_nodes_;
   CartilageElasticity socket_elasticity_, femur_elasticity_;
+  Points femur_points_ = Points(0, 3);  // in the image pose
+  Triangles bare_femur_;                // of femur points
+  std::optional<LigamentForce> ligaments_;
   double foundation_stiffness_ = 0.0;
 };
 

@@ -6,6 +6,8 @@
 #include <coxa/mesh/vertex_normals.h>
 
 #include <algorithm>
+#include <cctype>
+#include <set>
 
 namespace coxa::joint {
 namespace {
@@ -44,6 +46,32 @@ double outwardness(const TetMesh& mesh, const Vec3& centre) {
   return sum / areas.sum();
 }
 
+void check_ligaments(const JointModel& model) {
+  std::set<std::string> names;
+  for (const Ligament& ligament : model.ligaments) {
+    const std::string& name = ligament.name;
+    const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+    require(!name.empty() && std::all_of(name.begin(), name.end(), plain),
+            "the name of a ligament takes letters, digits and underscores, got \"", name, "\"");
+    require(names.insert(name).second, "two ligaments are called ", name);
+    require(ligament.stiffness > 0.0, name, ": stiffness must be positive, got ",
+            ligament.stiffness, " N/mm");
+    require(ligament.slack_length > 0.0, name, ": slack length must be positive, got ",
+            ligament.slack_length, " mm");
+    require(ligament.wrap_radius >= 0.0, name,
+            ": the radius it wraps around must not be negative, ", "got ", ligament.wrap_radius,
+            " mm");
+    require((ligament.origin - ligament.insertion).norm() > 0.0, name,
+            ": origin and insertion are one point");
+    const Vec3& centre = model.X_IF.p;
+    const double nearest =
+        std::min((ligament.origin - centre).norm(), (ligament.insertion - centre).norm());
+    require(ligament.wrap_radius == 0.0 || ligament.wrap_radius < nearest, name, ": an end lies ",
+            nearest, " mm from the joint centre, inside the sphere of ", ligament.wrap_radius,
+            " mm that it wraps around");
+  }
+}
+
 }  // namespace
 
 void check_model(const JointModel& model) {
@@ -69,6 +97,9 @@ void check_model(const JointModel& model) {
   }
   require(model.hip_bone.empty() == model.femur.empty(),
           "the bony limit needs both bone surfaces, or none");
+  require(model.bare_bone == BareBone::hip_bone || !model.femur.empty(),
+          "acetabular cartilage on bare femur needs both bone surfaces");
+  check_ligaments(model);
   if (!model.femur.empty()) {
     require_closed_manifold(model.hip_bone, "hip_bone");
     require_closed_manifold(model.femur, "femur");

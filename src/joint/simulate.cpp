@@ -208,6 +208,8 @@ JointResult Simulation::run() {
   result_.articular_area = area(articular);
   result_.clock = elements_.clock;
   result_.load_description = load_.description;
+  result_.bare_bone = model_.bare_bone;
+  for (const Ligament& ligament : model_.ligaments) result_.ligaments.push_back(ligament.name);
   if (load_.mode == LoadMode::force) unseated_ = march_.equilibrium().seat(state_, force(0));
 
   const Index n = motion_.n_frames();

@@ -25,7 +25,9 @@ VecX one() { return VecX::Ones(1); }
 
 }  // namespace
 
-TEST(Relaxation, TakesTheFirstStepInFull) { EXPECT_NEAR(after(line(-0.9), one(), 1)[0], -0.9, 1e-15); }
+TEST(Relaxation, TakesTheFirstStepInFull) {
+  EXPECT_NEAR(after(line(-0.9), one(), 1)[0], -0.9, 1e-15);
+}
 TEST(Relaxation, EndsAnAlternatingIterationOnALineInTheSecondStep) {
   for (const double slope : {-0.5, -1.0, -3.0})
     EXPECT_NEAR(after(line(slope), one(), 2)[0], 0.0, 1e-14);

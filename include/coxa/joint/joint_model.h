@@ -3,8 +3,11 @@
 #include <coxa/core/types.h>
 #include <coxa/geom/clock_face.h>
 #include <coxa/geom/rigid_transform.h>
+#include <coxa/joint/ligament.h>
 #include <coxa/mesh/tet_mesh.h>
 #include <coxa/mesh/tri_mesh.h>
+
+#include <vector>
 
 namespace coxa::joint {
 
@@ -22,6 +25,12 @@ struct CartilageMaterial {
   double poissons_ratio = 0.42;  ///< in (-1, 0.5)
 };
 
+/// Bare bone that the other side's cartilage may rest on.
+enum class BareBone {
+  hip_bone,  ///< the hip bone, by the femoral cartilage
+  both       ///< the femur as well, by the acetabular cartilage
+};
+
 /// One hip in its image pose: everything in image space (LPS mm).
 struct JointModel {
   Side side = Side::right;
@@ -32,11 +41,14 @@ struct JointModel {
   /// their origin at the joint centre.
   RigidTransform X_IP, X_IF;
   CartilageMaterial material;
+  BareBone bare_bone = BareBone::hip_bone;
+  std::vector<Ligament> ligaments = {};
 };
 
 /// @throws Error bad_input or bad_mesh naming what cannot be used: no tetrahedra, no articular or
 /// bone-side facet,
-///               a material value out of range, frames whose origins are apart
+///               a material value out of range, frames whose origins are apart, a ligament that
+///               cannot be
 void check_model(const JointModel& model);
 
 /// Facets of a mesh that carry `tag`.

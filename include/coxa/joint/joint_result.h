@@ -3,6 +3,7 @@
 #include <coxa/core/types.h>
 #include <coxa/geom/clock_face.h>
 #include <coxa/geom/rigid_transform.h>
+#include <coxa/joint/joint_model.h>
 #include <coxa/motion/hip_motion.h>
 
 #include <array>
@@ -62,14 +63,17 @@ struct CrushFigures {
 struct BalanceFigures {
   Vec3 applied_force =
       Vec3::Zero();  ///< N, femur onto socket, image axes; NaN with a prescribed pose
-  Vec3 contact_force = Vec3::Zero();  ///< N, femur onto socket: integral of pressure times normal,
-                                      ///< bare bone included
-  Vec3 force_on_bone = Vec3::Zero();  ///< N, the part of it on hip bone that no cartilage covers
+  Vec3 contact_force = Vec3::Zero();   ///< N, femur onto socket: integral of pressure times normal,
+                                       ///< bare bone included
+  Vec3 force_on_bone = Vec3::Zero();   ///< N, the part of it on hip bone that no cartilage covers
+  Vec3 force_of_femur = Vec3::Zero();  ///< N, the part of it by femur that no cartilage covers
+  Vec3 ligament_force = Vec3::Zero();  ///< N, of the ligaments on the femur
   Vec3 socket_reaction = Vec3::Zero();  ///< N, of the acetabular bone side onto the hip bone
   Vec3 femur_reaction = Vec3::Zero();   ///< N, of the femoral bone side onto the femur
-  double force_error = 0.0;     ///< |contact - applied| / |applied|; 0 with a prescribed pose
-  double reaction_error = 0.0;  ///< |socket + bare bone + femur| / |contact force|
-  double elastic_energy = 0.0;  ///< N·mm
+  double force_error =
+      0.0;  ///< |contact - applied - ligaments| / |applied|; 0 with a prescribed pose
+  double reaction_error = 0.0;  ///< |socket + bare bones + femur| / |contact force|
+  double elastic_energy = 0.0;  ///< N·mm, of cartilages and ligaments
   double contact_energy = 0.0;  ///< N·mm, left in the penalty
   double work = 0.0;  ///< N·mm, done by the femur's bone side since the first loaded state
 };
@@ -96,6 +100,7 @@ struct FrameResult {
   ContactFigures contact;
   BalanceFigures balance;
   CrushFigures crush;
+  VecX ligament_tension;                  ///< N, as the model's ligaments
   std::array<SectorFigures, 12> sectors;  ///< sector h is centred on h o'clock, 0 on twelve
   std::array<SectorFigures, 6> regions;   ///< as kRegionNames
   double residual = 0.0;  ///< of the free nodes' forces, relative to the joint force
@@ -128,6 +133,8 @@ struct JointResult {
   std::optional<BonyLimit> bony_limit;
   std::optional<CentreSensitivity> sensitivity;
   std::string load_description;
+  BareBone bare_bone = BareBone::hip_bone;  ///< of the model
+  std::vector<std::string> ligaments;       ///< the model's, by name
   double seconds = 0.0;
 
   Index n_converged() const;
