@@ -30,7 +30,7 @@ struct LiveHip::Impl {
   BoneLimit limit;
   Equilibrium rough_equilibrium, exact_equilibrium;
   SocketElements elements;
-  HipState state;
+  HipState state, trial;  // the trial keeps its storage from step to step
   Predictor predictor;
 
   Impl(const JointModel& hip, const LoadCase& load)
@@ -45,7 +45,8 @@ struct LiveHip::Impl {
         elements(socket_elements(hip)),
         state{system.reference(),
               {},
-              system.make_contact(exact.contact_stiffness, exact.max_translation)} {}
+              system.make_contact(exact.contact_stiffness, exact.max_translation)},
+        trial(state) {}
 
   Vec3 found() const { return state.x.segment<3>(3 * system.translation()); }
   RigidTransform placed(const BonePose& pose) const {
@@ -67,7 +68,8 @@ FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
                                  const Monitor& monitor) {
   const auto start = std::chrono::steady_clock::now();
   Equilibrium& equilibrium = exactness == Exactness::result ? exact_equilibrium : rough_equilibrium;
-  const auto attempt = [&](HipState& trial) {
+  const auto attempt = [&] {
+    trial = state;
     if (exactness == Exactness::by_hand) {
       // what presses by overlap presses without it from now on: multipliers follow the movement
       trial.contact.update_multipliers(trial.x, kInfinity);
@@ -77,18 +79,16 @@ FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
     predictor.carry(system, trial, target);
     return equilibrium.settle(trial, force, exactness, monitor);
   };
-  HipState trial = state;
-  Settling settling = attempt(trial);
+  Settling settling = attempt();
   if (!settling.converged && predictor.has_rate()) {
     // once more without the guess where the movement leads
     predictor.forget();
-    trial = state;
-    settling = attempt(trial);
+    settling = attempt();
   }
   if (settling.converged) {
     // settling in place is no step
     if (exactness == Exactness::by_hand) predictor.note(state);
-    state = std::move(trial);
+    std::swap(state, trial);
   }
   FrameResult frame;
   frame.status = settling.converged ? FrameStatus::converged : FrameStatus::failed;
