@@ -22,7 +22,8 @@ Fields joint_defaults() {
           {"force_N", joint.force},
           {"young_mpa", joint.youngs_modulus},
           {"poisson", joint.poisson_ratio},
-          {"law", joint.law}};
+          {"law", joint.law},
+          {"bare_bone", joint.bare_bone}};
 }
 
 Fields segment_defaults() {

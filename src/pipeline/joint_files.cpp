@@ -61,7 +61,19 @@ std::string cell(double value) {
   return text;
 }
 
-std::string header() {
+/// What only some models have: bare femur in contact, ligaments.
+std::size_t n_optional_cells(const joint::JointResult& result) {
+  return (result.bare_bone == joint::BareBone::both ? 1 : 0) + result.ligaments.size();
+}
+
+std::string optional_cells(const joint::FrameResult& f, const joint::JointResult& result) {
+  std::string text;
+  if (result.bare_bone == joint::BareBone::both) text += cell(f.balance.force_of_femur.norm());
+  for (const double tension : f.ligament_tension) text += cell(tension);
+  return text;
+}
+
+std::string header(const joint::JointResult& result) {
   std::string text =
       "frame,time_s,status,flexion_deg,adduction_deg,internal_rotation_deg,translation_x_mm,"
       "translation_y_mm,"
@@ -75,10 +87,12 @@ std::string header() {
       "reaction_error,elastic_energy_Nmm,least_volume_ratio";
   for (int h = 0; h < 12; ++h) text += join_text(",strain_", h == 0 ? 12 : h, "_oclock");
   for (const char* region : joint::kRegionNames) text += join_text(",strain_", region);
+  if (result.bare_bone == joint::BareBone::both) text += ",force_of_bare_femur_N";
+  for (const std::string& ligament : result.ligaments) text += ",tension_" + ligament + "_N";
   return text + ",residual,iterations,seconds,reason\n";
 }
 
-std::string contact_cells(const joint::FrameResult& f) {
+std::string contact_cells(const joint::FrameResult& f, const joint::JointResult& result) {
   const joint::ContactFigures& c = f.contact;
   std::string text = cell(c.peak_pressure_p99) + cell(c.peak_pressure_p95) +
                      cell(c.peak_pressure_patch) + cell(c.mean_pressure) + cell(c.contact_area) +
@@ -90,12 +104,12 @@ std::string contact_cells(const joint::FrameResult& f) {
           cell(f.crush.least_volume_ratio);
   for (const joint::SectorFigures& sector : f.sectors) text += cell(sector.strain);
   for (const joint::SectorFigures& region : f.regions) text += cell(region.strain);
-  return text + cell(f.residual) + cell(f.iterations) + cell(f.seconds);
+  return text + optional_cells(f, result) + cell(f.residual) + cell(f.iterations) + cell(f.seconds);
 }
 
 /// Cells of a frame without a result: as many commas as `contact_cells` has.
-std::string no_contact_cells() {
-  return std::string(17 + 12 + joint::kRegionNames.size() + 3, ',');
+std::string no_contact_cells(const joint::JointResult& result) {
+  return std::string(17 + 12 + joint::kRegionNames.size() + n_optional_cells(result) + 3, ',');
 }
 
 std::string quoted(std::string text) {
@@ -122,14 +136,15 @@ void write_frames(const fs::path& folder, const joint::JointModel& model,
 }
 
 std::string summary_csv(const motion::HipMotion& motion, const joint::JointResult& result) {
-  std::string text = header();
+  std::string text = header(result);
   for (const joint::FrameResult& f : result.frames) {
     text += join_text(f.frame) + cell(motion.time[static_cast<std::size_t>(f.frame)]) + "," +
             joint::name_of(f.status) + cell(degrees(f.angles.flexion)) +
             cell(degrees(f.angles.adduction)) + cell(degrees(f.angles.internal_rotation));
     const bool converged = f.status == joint::FrameStatus::converged;
     for (int i = 0; i < 3; ++i) text += cell(converged ? f.translation[i] : kNaN);
-    text += cell(f.bone_clearance) + (converged ? contact_cells(f) : no_contact_cells()) + "," +
+    text += cell(f.bone_clearance) +
+            (converged ? contact_cells(f, result) : no_contact_cells(result)) + "," +
             quoted(f.reason) + "\n";
   }
   return text;

@@ -26,6 +26,18 @@ const char* name_of(Loading loading) {
                                            : "prescribed_pose";
 }
 
+std::string numbers(const Vec3& v) { return join_text(v[0], ", ", v[1], ", ", v[2]); }
+
+/// A ligament as the table of a joint file.
+std::string to_toml(const LigamentEntry& l) {
+  std::string text = join_text("\n[[joint.ligament]]\nname = \"", l.name, "\"\norigin_lps_mm = [",
+                               numbers(l.origin), "]\ninsertion_lps_mm = [", numbers(l.insertion),
+                               "]\nstiffness_N_per_mm = ", l.stiffness, "\n");
+  if (l.slack_length) text += join_text("slack_length_mm = ", *l.slack_length, "\n");
+  if (l.wrap_radius != 0.0) text += join_text("wrap_radius_mm = ", l.wrap_radius, "\n");
+  return text;
+}
+
 Record wanted_record(const JointRequest& request) {
   Record record;
   record.verb = "joint";
@@ -44,6 +56,10 @@ Record wanted_record(const JointRequest& request) {
     const Vec3& d = *j.direction;
     record.options["direction"] = join_text(d[0], " ", d[1], " ", d[2]);
   }
+  // what is not asked for leaves no trace, so that results made before it could be are still valid
+  if (j.bare_bone != "hip_bone") record.options["bare_bone"] = j.bare_bone;
+  for (const LigamentEntry& ligament : j.ligaments)
+    record.options["ligament " + ligament.name] = to_toml(ligament);
   record.inputs = {{"acetabular_cartilage", io::sha256_of_path(request.acetabular_cartilage)},
                    {"femoral_cartilage", io::sha256_of_path(request.femoral_cartilage)},
                    {"motion", io::sha256_of_path(request.motion / "motion.csv")},
@@ -84,7 +100,8 @@ void add_figures(const joint::JointResult& result, Record& record) {
   record.figures["frames"] = static_cast<std::int64_t>(result.frames.size());
   record.figures["frames_converged"] = std::int64_t{result.n_converged()};
   record.figures["load"] = result.load_description;
-  double peak = 0.0, force_error = 0.0, reaction_error = 0.0, bare = 0.0;
+  double peak = 0.0, force_error = 0.0, reaction_error = 0.0, bare = 0.0, bare_femur = 0.0;
+  VecX tension = VecX::Zero(static_cast<Eigen::Index>(result.ligaments.size()));
   for (const joint::FrameResult& frame : result.frames) {
     if (frame.status == joint::FrameStatus::failed) {
       record.warnings.push_back(
@@ -99,13 +116,21 @@ void add_figures(const joint::JointResult& result, Record& record) {
           " % of its volume: an edge bears the load there, and peak pressures tell of that edge"));
     }
     peak = std::max(peak, frame.contact.peak_pressure_p99);
-    if (const double all = frame.balance.contact_force.norm(); all > 0.0)
+    if (const double all = frame.balance.contact_force.norm(); all > 0.0) {
       bare = std::max(bare, frame.balance.force_on_bone.norm() / all);
+      bare_femur = std::max(bare_femur, frame.balance.force_of_femur.norm() / all);
+    }
+    tension = tension.cwiseMax(frame.ligament_tension);
     force_error = std::max(force_error, frame.balance.force_error);
     reaction_error = std::max(reaction_error, frame.balance.reaction_error);
   }
   record.figures["largest_peak_pressure_p99_mpa"] = peak;
   record.figures["largest_share_on_bare_bone_percent"] = 100.0 * bare;
+  if (result.bare_bone == joint::BareBone::both)
+    record.figures["largest_share_of_bare_femur_percent"] = 100.0 * bare_femur;
+  for (std::size_t k = 0; k < result.ligaments.size(); ++k)
+    record.figures["largest_tension_" + result.ligaments[k] + "_N"] =
+        tension[static_cast<Eigen::Index>(k)];
   if (bare > kMuchOnBone) {
     record.warnings.push_back(join_text(
         "up to ", 100.0 * bare,
@@ -143,6 +168,15 @@ joint::JointModel read_joint_model(const JointRequest& request, const motion::Bo
                            : joint::MaterialLaw::st_venant_kirchhoff;
   model.material.youngs_modulus = request.joint.youngs_modulus;
   model.material.poissons_ratio = request.joint.poisson_ratio;
+  model.bare_bone =
+      request.joint.bare_bone == "both" ? joint::BareBone::both : joint::BareBone::hip_bone;
+  for (const LigamentEntry& entry : request.joint.ligaments) {
+    joint::Ligament ligament{entry.name,      entry.origin, entry.insertion,
+                             entry.stiffness, 0.0,          entry.wrap_radius};
+    ligament.slack_length =
+        entry.slack_length.value_or(joint::image_length(ligament, model.X_IF.p));
+    model.ligaments.push_back(ligament);
+  }
   return model;
 }
 
@@ -204,6 +238,8 @@ std::string to_toml(const JointRequest& request, const fs::path& folder) {
     const Vec3& d = *j.direction;
     text += join_text("direction = [", d[0], ", ", d[1], ", ", d[2], "]\n");
   }
+  if (j.bare_bone != "hip_bone") text += join_text("bare_bone = \"", j.bare_bone, "\"\n");
+  for (const LigamentEntry& ligament : j.ligaments) text += to_toml(ligament);
   return text;
 }
 

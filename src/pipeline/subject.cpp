@@ -103,6 +103,22 @@ void check_joint(const io::Table& table, const JointEntry& joint) {
           table.where("law"),
           " must be \"corotational\", \"st_venant_kirchhoff\" or \"neo_hookean\", got \"",
           joint.law, "\"");
+  require(joint.bare_bone == "hip_bone" || joint.bare_bone == "both", table.where("bare_bone"),
+          " must be \"hip_bone\" or \"both\", got \"", joint.bare_bone, "\"");
+}
+
+std::vector<LigamentEntry> read_ligaments(const io::Table& joint) {
+  std::vector<LigamentEntry> ligaments;
+  for (const io::Table& table : joint.tables("ligament")) {
+    ligaments.push_back({.name = table.get<std::string>("name"),
+                         .origin = table.get<Vec3>("origin_lps_mm"),
+                         .insertion = table.get<Vec3>("insertion_lps_mm"),
+                         .stiffness = table.get<double>("stiffness_N_per_mm"),
+                         .slack_length = table.find<double>("slack_length_mm"),
+                         .wrap_radius = table.value_or("wrap_radius_mm", 0.0)});
+    table.finish();
+  }
+  return ligaments;
 }
 
 /// Percent of body weight of an activity that was measured in vivo.
@@ -144,6 +160,8 @@ JointEntry read_joint_entry(const io::Table& root) {
   joint.youngs_modulus = table->value_or("young_mpa", joint.youngs_modulus);
   joint.poisson_ratio = table->value_or("poisson", joint.poisson_ratio);
   joint.law = table->value_or("law", joint.law);
+  joint.bare_bone = table->value_or("bare_bone", joint.bare_bone);
+  joint.ligaments = read_ligaments(*table);
   table->finish();
   check_joint(*table, joint);
   return joint;

@@ -24,8 +24,11 @@ fs::path subject_of(const test::SmallRun& small, const std::string& joint) {
 
 TEST(SurfaceRun, GoesFromGivenSurfacesToTheReport) {
   const test::SmallRun small("surface_run");
-  const Subject subject = read_subject(
-      subject_of(small, "[joint]\nloading = \"body_weight\"\npercent_body_weight = 50\n"));
+  const Subject subject = read_subject(subject_of(
+      small,
+      "[joint]\nloading = \"body_weight\"\npercent_body_weight = 50\nbare_bone = \"both\"\n"
+      "[[joint.ligament]]\nname = \"band\"\norigin_lps_mm = [0, 0, 40]\n"
+      "insertion_lps_mm = [0, 0, -20]\nstiffness_N_per_mm = 4\nslack_length_mm = 50\n"));
   const auto records = run_subject(subject, small / "out", {}, {});
   ASSERT_EQ(records.size(), 5U);
   EXPECT_EQ(records[0].verb, "segment");
@@ -34,6 +37,9 @@ TEST(SurfaceRun, GoesFromGivenSurfacesToTheReport) {
   EXPECT_NE(std::get<std::string>(records[3].figures.at("load")).find("294.2 N"), std::string::npos)
       << std::get<std::string>(records[3].figures.at("load"));
   EXPECT_GE(std::get<std::int64_t>(records[3].figures.at("frames_converged")), 1);
+  // 60 mm long in the image pose
+  EXPECT_GT(std::get<double>(records[3].figures.at("largest_tension_band_N")), 20.0);
+  EXPECT_EQ(records[3].figures.count("largest_share_of_bare_femur_percent"), 1U);
   EXPECT_TRUE(fs::exists(small / "out" / "report" / "report.html"));
   EXPECT_FALSE(fs::exists(small / "out" / "report" / "slices.png"));
 }

@@ -30,6 +30,15 @@ struct MotionEntry {
 
 enum class Loading { joint_force, body_weight, prescribed_pose };
 
+/// A ligament of the joint; see `joint::Ligament`.
+struct LigamentEntry {
+  std::string name;
+  Vec3 origin = Vec3::Zero(), insertion = Vec3::Zero();  ///< mm, image frame
+  double stiffness = 0.0;                                ///< N/mm
+  std::optional<double> slack_length;  ///< mm; nullopt: as long as in the image pose
+  double wrap_radius = 0.0;            ///< mm; 0: straight
+};
+
 struct JointEntry {
   Loading loading = Loading::joint_force;
   double force = 500.0;  ///< N, of the joint force
@@ -39,7 +48,9 @@ struct JointEntry {
   std::optional<Vec3> direction;
   double youngs_modulus = 12.0;  ///< MPa
   double poisson_ratio = 0.42;
-  std::string law = "corotational";  ///< or st_venant_kirchhoff, neo_hookean
+  std::string law = "corotational";    ///< or st_venant_kirchhoff, neo_hookean
+  std::string bare_bone = "hip_bone";  ///< or both
+  std::vector<LigamentEntry> ligaments = {};
 };
 
 struct MeshEntry {
