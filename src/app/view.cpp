@@ -7,12 +7,12 @@ namespace coxa::app {
 namespace {
 
 struct ViewArguments {
-  std::string folder, listen = "127.0.0.1";
+  std::string folder, other, listen = "127.0.0.1";
   int port = 8080;
 };
 
 void run_view(const ViewArguments& arguments, Context& context) {
-  serve::ViewApplication application(arguments.folder, serve::find_web_root());
+  serve::ViewApplication application(arguments.folder, serve::find_web_root(), arguments.other);
   serve::ServerOptions options;
   options.address = arguments.listen;
   options.port = static_cast<std::uint16_t>(arguments.port);
@@ -37,6 +37,8 @@ void add_view(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<ViewArguments>();
   verb->add_option("folder", arguments->folder, "a subject's folder, finished or just begun")
       ->required()
+      ->check(CLI::ExistingDirectory);
+  verb->add_option("--compare", arguments->other, "a second result, shown beside the first")
       ->check(CLI::ExistingDirectory);
   verb->add_option("--port", arguments->port, "port; 0 takes any free one")
       ->check(CLI::Range(0, 65535));

@@ -2,12 +2,17 @@
 
 #include <coxa/core/error.h>
 
+#include <algorithm>
 #include <bit>
+#include <cstdio>
 #include <cstring>
 #include <vector>
 
 namespace coxa::serve {
 namespace {
+
+constexpr double kSteps = 65534.0;  // of 16 bits, less the one that stands for NaN
+constexpr std::uint16_t kNoNumber = 65535;
 
 static_assert(std::endian::native == std::endian::little, "bundles are little-endian");
 
@@ -29,10 +34,10 @@ std::vector<To> row_by_row(const Matrix& values) {
 }  // namespace
 
 void Bundle::add_raw(std::string_view name, std::string_view type, std::int64_t rows,
-                     std::int64_t columns, std::string_view raw) {
-  list_ +=
-      join_text(list_.empty() ? "" : ",", "{\"name\":\"", name, "\",\"type\":\"", type,
-                "\",\"rows\":", rows, ",\"columns\":", columns, ",\"offset\":", data_.size(), "}");
+                     std::int64_t columns, std::string_view raw, std::string_view more) {
+  list_ += join_text(list_.empty() ? "" : ",", "{\"name\":\"", name, "\",\"type\":\"", type,
+                     "\",\"rows\":", rows, ",\"columns\":", columns, ",\"offset\":", data_.size(),
+                     more, "}");
   data_ += raw;
   data_.append((4 - data_.size() % 4) % 4, '\0');
 }
@@ -53,6 +58,26 @@ void Bundle::add(std::string_view name, std::span<const std::uint8_t> values) {
 void Bundle::add(std::string_view name, std::span<const std::uint16_t> values) {
   add_raw(name, "uint16", static_cast<std::int64_t>(values.size()), 1,
           {reinterpret_cast<const char*>(values.data()), 2 * values.size()});
+}
+
+void Bundle::add_in_steps(std::string_view name, const MatX& values) {
+  double low = kInfinity, high = -kInfinity;
+  for (const double v : values.reshaped()) {
+    if (v == v) low = std::min(low, v), high = std::max(high, v);
+  }
+  if (low > high) low = high = 0.0;
+  const double step = high > low ? (high - low) / kSteps : 1.0, per_step = 1.0 / step;
+  std::vector<std::uint16_t> q(static_cast<std::size_t>(values.size()));
+  std::size_t at = 0;
+  for (Eigen::Index r = 0; r < values.rows(); ++r) {
+    for (Eigen::Index c = 0; c < values.cols(); ++c, ++at) {
+      const double v = values(r, c);
+      q[at] = v == v ? static_cast<std::uint16_t>((v - low) * per_step + 0.5) : kNoNumber;
+    }
+  }
+  char more[80];
+  std::snprintf(more, sizeof more, ",\"low\":%.9g,\"step\":%.9g", low, step);
+  add_raw(name, "steps16", values.rows(), values.cols(), raw(q), more);
 }
 
 std::string Bundle::bytes() const {

@@ -14,14 +14,12 @@
 #include <cstdio>
 
 #include "csv_table.h"
+#include "normal_curves.h"
 
 namespace coxa::serve {
 namespace fs = std::filesystem;
 namespace {
 using Json = nlohmann::json;
-
-constexpr const char* kStructures[] = {"hip_bone", "femur", "acetabular_cartilage",
-                                       "femoral_cartilage"};
 
 Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -29,12 +27,6 @@ Json read_json(const fs::path& path) {
   const Json json = Json::parse(io::read_bytes(path), nullptr, false);
   if (json.is_discarded()) fail(coxa::ErrorCode::bad_file, path.string(), " is not JSON");
   return json;
-}
-
-bool is_image(const fs::path& path) {
-  const std::string extension = io::extension_of(path);
-  return extension == ".nii" || extension == ".nii.gz" || extension == ".nrrd" ||
-         extension == ".mha" || extension == ".mhd";
 }
 
 Json field_list() {
@@ -81,6 +73,12 @@ std::map<std::string, VecX> stored_fields(const io::TetFile& file) {
 }
 
 }  // namespace
+
+bool is_image(const fs::path& path) {
+  const std::string extension = io::extension_of(path);
+  return extension == ".nii" || extension == ".nii.gz" || extension == ".nrrd" ||
+         extension == ".mha" || extension == ".mhd";
+}
 
 CaseFolder::CaseFolder(const fs::path& folder) {
   std::error_code error;
@@ -133,6 +131,13 @@ fs::path CaseFolder::landmarks_file() const {
   if (fs::exists(own)) return own;
   const CaseInput in = input();
   return in.subject ? in.subject->landmarks : fs::path();
+}
+
+fs::path CaseFolder::pins_file() const {
+  const fs::path own = folder_ / "pins.mrk.json";
+  if (fs::exists(own)) return own;
+  const CaseInput in = input();
+  return in.subject ? in.subject->pins : fs::path();
 }
 
 Side CaseFolder::side() const {
@@ -200,6 +205,8 @@ Json CaseFolder::overview() const {
   json["image"] = in.images.empty() ? Json(nullptr) : Json(in.images.front().path.filename());
   json["image_fault"] = in.fault;
   json["can_run"] = in.subject.has_value();
+  if (in.subject) json["movement"] = in.subject->motion.pattern;
+  json["normal_curves"] = normal_curves();
   const bool framed = has_meshes() && fs::exists(folder_ / "motion/frames.json") &&
                       fs::exists(folder_ / "subject.toml");
   json["live"] = framed;
@@ -225,20 +232,27 @@ std::string CaseFolder::surface(const std::string& structure) const {
   return bundle.bytes();
 }
 
-Body CaseFolder::read_body(const std::string& name) const {
+std::shared_ptr<const Body> CaseFolder::read_body(const std::string& name) const {
   require(name == "acetabular" || name == "femoral", "there is no body \"", name, "\"");
-  Body body{name, io::read_tets(folder_ / "mesh" / (name + "_cartilage.vtu")), {}};
-  body.surface = body_surface(body.mesh);
-  return body;
+  const fs::path file = folder_ / "mesh" / (name + "_cartilage.vtu");
+  std::error_code error;
+  const auto written = fs::last_write_time(file, error);  // a missing file is told of on reading
+  KeptBody& kept = bodies_[name];
+  if (!kept.body || kept.written != written) {
+    Body body{name, io::read_tets(file), {}};
+    body.surface = body_surface(body.mesh);
+    kept = {written, std::make_shared<const Body>(std::move(body))};
+  }
+  return kept.body;
 }
 
 std::string CaseFolder::body(const std::string& name) const {
-  const Body body = read_body(name);
-  Bundle bundle(Json{{"name", name}, {"tets", body.mesh.n_tets()}}.dump());
-  bundle.add("positions", at_surface(body.surface, body.mesh.points));
-  bundle.add("triangles", body.surface.triangles);
-  bundle.add("tags", body.surface.tags);
-  bundle.add("thickness", MatX(surface_thickness(body.mesh, body.surface)));
+  const auto body = read_body(name);
+  Bundle bundle(Json{{"name", name}, {"tets", body->mesh.n_tets()}}.dump());
+  bundle.add("positions", at_surface(body->surface, body->mesh.points));
+  bundle.add("triangles", body->surface.triangles);
+  bundle.add("tags", body->surface.tags);
+  bundle.add("thickness", MatX(surface_thickness(body->mesh, body->surface)));
   return bundle.bytes();
 }
 
@@ -259,7 +273,8 @@ std::string CaseFolder::frame(Index index) const {
   std::vector<std::pair<std::string, MatX>> arrays;
   for (const char* name : {"acetabular", "femoral"}) {
     const io::TetFile file = io::read_tets_with_fields(frames / frame_file(name, index));
-    const Body reference = read_body(name);
+    const auto kept = read_body(name);
+    const Body& reference = *kept;
     require(file.mesh.n_vertices() == reference.mesh.n_vertices(), "frame ", index, " has ",
             file.mesh.n_vertices(), " nodes, the mesh ", reference.mesh.n_vertices(),
             ": they are of different runs");

@@ -14,6 +14,12 @@
 
 namespace coxa::serve {
 
+inline constexpr const char* kStructures[] = {"hip_bone", "femur", "acetabular_cartilage",
+                                              "femoral_cartilage"};
+
+/// Whether a name is one of an image in one file.
+bool is_image(const std::filesystem::path& path);
+
 /// What a segmentation needs of the subject, from its file or, without one, from the one image that
 /// lies in the folder.
 struct CaseInput {
@@ -43,6 +49,9 @@ class CaseFolder {
   /// Where landmarks are read from: the folder's own, else the subject file's; empty: nowhere.
   std::filesystem::path landmarks_file() const;
 
+  /// Likewise the points that surfaces must pass through.
+  std::filesystem::path pins_file() const;
+
   // bundles, as bytes; @throws Error bad_file or bad_input where there is no such thing
   std::string surface(const std::string& structure) const;
   std::string body(const std::string& name) const;
@@ -50,7 +59,8 @@ class CaseFolder {
   std::string image() const;
 
   bool has_meshes() const;
-  Body read_body(const std::string& name) const;
+  /// Kept until its file changes.
+  std::shared_ptr<const Body> read_body(const std::string& name) const;
   /// The hip as it would be simulated, for the live examination.
   struct Hip {
     joint::JointModel model;
@@ -65,7 +75,12 @@ class CaseFolder {
   nlohmann::json joint_frames() const;
   RigidTransform unsolved_pose(Index index) const;
 
+  struct KeptBody {
+    std::filesystem::file_time_type written;
+    std::shared_ptr<const Body> body;
+  };
   std::filesystem::path folder_;
+  mutable std::map<std::string, KeptBody> bodies_;  ///< requests are answered one by one
 };
 
 }  // namespace coxa::serve

@@ -3,6 +3,8 @@
 #include <boost/asio/post.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 
+#include <limits>
+
 #include "sessions.h"
 
 namespace coxa::serve {
@@ -14,6 +16,7 @@ constexpr std::string_view kPolicy =
     "connect-src 'self'; font-src 'self'; base-uri 'none'; form-action 'none'; "
     "frame-ancestors 'none'";
 constexpr std::uint32_t kMaxHeader = 16u << 10;
+constexpr int kLargeBodyPatience = 10;  // times the usual timeout
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -50,34 +53,59 @@ void HttpSession::close() {
 void HttpSession::read() {
   parser_.emplace();
   parser_->header_limit(kMaxHeader);
-  parser_->body_limit(hub_.options.max_body);
+  // until it is known who asks for what; Boost 1.74 takes `none` for no body at all
+  parser_->body_limit(std::numeric_limits<std::uint64_t>::max());
   stream_.expires_after(std::chrono::seconds(hub_.options.timeout_seconds));
+  http::async_read_header(
+      stream_, buffer_, *parser_,
+      [self = shared_from_this()](ErrorCode error, std::size_t) { self->on_header(error); });
+}
+
+bool HttpSession::broken(ErrorCode error) {
+  if (!error) return false;
+  if (error == http::error::body_limit || error == http::error::header_limit) {
+    refuse(413, "this request is too large");
+  } else if (error != http::error::end_of_stream &&
+             error.category() == http::make_error_code(http::error::bad_method).category()) {
+    refuse(400, "this is not an HTTP request");
+  }
+  return true;
+}
+
+void HttpSession::refuse(int status, const std::string& why) {
+  request_ = {};
+  request_.keep_alive(false);
+  answer(text_response(status, "text/plain", why + "\n"));
+}
+
+void HttpSession::on_header(ErrorCode error) {
+  if (broken(error)) return;
+  const HttpRequest& head = parser_->get();
+  const std::string_view target = view_of(head.target());
+  const Claims claims{view_of(head[http::field::host]), view_of(head[http::field::origin]),
+                      view_of(head[http::field::cookie]), query_part(target)};
+  const std::string why = refusal(claims, hub_.options.token);
+  if (!why.empty()) return refuse(403, why);
+
+  std::size_t limit = hub_.options.max_body;
+  int seconds = hub_.options.timeout_seconds;
+  if (head.method() == http::verb::put) {
+    const std::size_t own = hub_.application.body_limit(std::string(path_part(target)));
+    if (own > limit) limit = own, seconds *= kLargeBodyPatience;
+  }
+  const auto length = parser_->content_length();
+  if (length && *length > limit) return refuse(413, "this request is too large");
+  parser_->body_limit(limit);
+  stream_.expires_after(std::chrono::seconds(seconds));
   http::async_read(
       stream_, buffer_, *parser_,
-      [self = shared_from_this()](ErrorCode error, std::size_t) { self->on_read(error); });
+      [self = shared_from_this()](ErrorCode error_, std::size_t) { self->on_read(error_); });
 }
 
 void HttpSession::on_read(ErrorCode error) {
-  if (error == http::error::end_of_stream || error == asio::error::operation_aborted) return;
-  if (error == http::error::body_limit || error == http::error::header_limit) {
-    request_ = {};
-    request_.keep_alive(false);
-    return answer(text_response(413, "text/plain", "this request is too large\n"));
-  }
-  if (error.category() == http::make_error_code(http::error::bad_method).category()) {
-    request_ = {};
-    request_.keep_alive(false);
-    return answer(text_response(400, "text/plain", "this is not an HTTP request\n"));
-  }
-  if (error) return;
+  if (broken(error)) return;
   request_ = parser_->release();
-
   const std::string_view target = view_of(request_.target());
-  const Claims claims{view_of(request_[http::field::host]), view_of(request_[http::field::origin]),
-                      view_of(request_[http::field::cookie]), query_part(target)};
-  const std::string why = refusal(claims, hub_.options.token);
-  if (!why.empty()) return answer(text_response(403, "text/plain", why + "\n"));
-
   if (websocket::is_upgrade(request_)) {
     if (path_part(target) != "/ws")
       return answer(text_response(404, "text/plain", "there is no such socket\n"));

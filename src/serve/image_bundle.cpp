@@ -61,21 +61,25 @@ std::string CaseFolder::image() const {
   require(!in.images.empty(), in.fault);
   const auto file = landmarks_file();
   const auto landmarks = file.empty() ? shape::Landmarks{} : io::read_landmarks(file);
-  const Volume volume = pipeline::read_image(in.images.front(), landmarks, {});
-  const Quantised values = quantised(volume.values);
+  Volume volume = pipeline::read_image(in.images.front(), landmarks, {});
+  const auto window = first_window(volume.values);
+  Quantised values = quantised(volume.values);
+  volume.values = std::vector<float>();  // hundreds of megabytes that are not needed any more
   Json direction = Json::array();
   for (int c = 0; c < 3; ++c) {
     for (int r = 0; r < 3; ++r) direction.push_back(volume.direction(r, c));
   }
-  Bundle bundle(Json{{"size", volume.size},
-                     {"spacing", {volume.spacing.x(), volume.spacing.y(), volume.spacing.z()}},
-                     {"origin", {volume.origin.x(), volume.origin.y(), volume.origin.z()}},
-                     {"direction_columns", direction},
-                     {"low", values.low},
-                     {"step", values.step},
-                     {"window", first_window(volume.values)}}
-                    .dump());
+  Bundle bundle(Json{
+      {"size", volume.size},
+      {"spacing", {volume.spacing.x(), volume.spacing.y(), volume.spacing.z()}},
+      {"origin", {volume.origin.x(), volume.origin.y(), volume.origin.z()}},
+      {"direction_columns", direction},
+      {"low", values.low},
+      {"step", values.step},
+      {"window",
+       window}}.dump());
   bundle.add("voxels", std::span<const std::uint16_t>(values.q));
+  values.q = std::vector<std::uint16_t>();
   return bundle.bytes();
 }
 

@@ -1,9 +1,8 @@
 #include "live_room.h"
 
-#include "pose_json.h"
+#include "live_answer.h"
 
 #include <coxa/core/error.h>
-#include <coxa/serve/bundle.h>
 
 #include <boost/asio/post.hpp>
 #include <chrono>
@@ -19,87 +18,67 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-Json number_or_null(double value) { return value == value ? Json(value) : Json(nullptr); }
-
-Json meta_of(const joint::FrameResult& frame, const motion::HipAngles& angles) {
-  const joint::ContactFigures& contact = frame.contact;
-  Json meta{{"status", joint::name_of(frame.status)},
-            {"reason", frame.reason},
-            {"femur_pose", json_of(frame.X_II)},
-            {"flexion_deg", degrees(angles.flexion)},
-            {"adduction_deg", degrees(angles.adduction)},
-            {"internal_rotation_deg", degrees(angles.internal_rotation)},
-            {"bone_clearance_mm", number_or_null(frame.bone_clearance)},
-            {"residual", frame.residual},
-            {"iterations", frame.iterations}};
-  if (frame.status == joint::FrameStatus::converged) {
-    meta["peak_pressure_p99_MPa"] = contact.peak_pressure_p99;
-    meta["mean_pressure_MPa"] = contact.mean_pressure;
-    meta["contact_area_mm2"] = contact.contact_area;
-    meta["contact_area_percent"] = 100.0 * contact.contact_share;
-    meta["penetration_mm"] = contact.penetration;
-  }
-  return meta;
-}
-
-using Arrays = std::vector<std::pair<std::string, MatX>>;
-using Values = std::map<std::string, VecX>;
-
-void add_body(Arrays& arrays, const std::string& name, const BodySurface& surface,
-              const Points& positions, const Values& values) {
-  arrays.emplace_back(name + ".positions", at_surface(surface, positions));
-  for (const auto& [key, value] : values)
-    arrays.emplace_back(name + "." + key, at_surface(surface, value));
-}
-
-/// True where a field comes of stress or strain; an empty one stands for all.
-bool needs_elements(const std::string& field) {
-  return field != "contact_pressure" && field != "gap" && field != "thickness";
-}
-Values chosen(Values values, const std::string& field) {
-  if (!field.empty())
-    std::erase_if(values, [&](const auto& entry) { return entry.first != field; });
-  return values;
-}
-Values acetabular_values(const joint::JointModel& model, const joint::FrameResult& frame,
-                         const std::string& field) {
-  Values values;
-  if (needs_elements(field))
-    values =
-        chosen(nodal_fields(model.acetabular_cartilage, acetabular_fields(model, frame)), field);
-  values["contact_pressure"] = frame.acetabular_pressure;
-  values["gap"] = frame.acetabular_gap;
-  return values;
-}
-Values femoral_values(const joint::JointModel& model, const joint::FrameResult& frame,
-                      const std::string& field) {
-  Values values;
-  if (needs_elements(field))
-    values = chosen(nodal_fields(model.femoral_cartilage, femoral_fields(model, frame)), field);
-  values["contact_pressure"] = frame.femoral_pressure;
-  return values;
-}
-
 }  // namespace
 
 /// One connection's hip. `hip` and what belongs to it are touched by the solver's thread alone; the
 /// rest is guarded by the room's mutex.
 struct LiveRoom::Guest {
   ClientId client = 0;
-  std::optional<Question> question;
+  std::optional<Question> waiting;
   bool working = false;
   std::atomic<bool> interrupt{false};  ///< ends a settling that is no longer wanted
 
   CaseFolder::Hip source;
-  std::map<std::string, BodySurface> surfaces;
+  LiveSurfaces surfaces;
   std::unique_ptr<joint::LiveHip> hip;
   std::optional<joint::FrameResult> last;  ///< the last step, to compare the exact state with
+
+  void seat(const CaseFolder& folder);
+  joint::LiveHip::Step solve(const Question& question);
+  /// The state reached, as the browser gets it.
+  std::string packed(const Question& question, const joint::LiveHip::Step& step, double solver_ms);
 };
+
+void LiveRoom::Guest::seat(const CaseFolder& folder) {
+  source = folder.read_hip();
+  surfaces = {body_surface(source.model.acetabular_cartilage),
+              body_surface(source.model.femoral_cartilage)};
+  hip = std::make_unique<joint::LiveHip>(source.model, source.load);
+}
+
+joint::LiveHip::Step LiveRoom::Guest::solve(const Question& question) {
+  Monitor monitor;
+  if (!question.exact) return hip->step_towards(question.target, monitor);
+  monitor.cancel_flag = &interrupt;
+  return {hip->settle(monitor), true};
+}
+
+std::string LiveRoom::Guest::packed(const Question& question, const joint::LiveHip::Step& step,
+                                    double solver_ms) {
+  const auto start = Clock::now();
+  const joint::FrameResult& frame = step.frame;
+  Json meta = live_meta(frame, hip->angles());
+  meta["type"] = question.exact ? "settled" : "step";
+  meta["number"] = question.number;
+  meta["arrived"] = step.arrived;
+  meta["solver_ms"] = solver_ms;
+  Bundle bundle;
+  if (frame.status == joint::FrameStatus::converged) {
+    const joint::JointModel& model = source.model;
+    add_live_state(bundle, model, surfaces, frame, question.field);
+    meta["tets"] = model.acetabular_cartilage.n_tets() + model.femoral_cartilage.n_tets();
+    if (question.exact && last) meta.update(live_error(frame, *last));
+    last = frame;
+  }
+  meta["packing_ms"] = milliseconds_since(start);
+  bundle.set_meta(meta.dump());
+  return bundle.bytes();
+}
 
 LiveRoom::~LiveRoom() {
   {
     const std::lock_guard lock(mutex_);
-    for (const auto& [client, guest] : guests_) guest->question.reset(), guest->interrupt = true;
+    for (const auto& [client, guest] : guests_) guest->waiting.reset(), guest->interrupt = true;
   }
   thread_.join();
 }
@@ -115,7 +94,7 @@ void LiveRoom::leave(ClientId client) {
   const std::lock_guard lock(mutex_);
   const auto it = guests_.find(client);
   if (it == guests_.end()) return;
-  it->second->question.reset();
+  it->second->waiting.reset();
   it->second->interrupt = true;
   guests_.erase(it);
 }
@@ -133,7 +112,7 @@ void LiveRoom::ask(ClientId client, const Question& question) {
     it->second->client = client;
   }
   const std::shared_ptr<Guest>& guest = it->second;
-  guest->question = question;
+  guest->waiting = question;
   guest->interrupt = true;
   if (guest->working) return;
   guest->working = true;
@@ -144,12 +123,12 @@ void LiveRoom::work(const std::shared_ptr<Guest>& guest) {
   Question question;
   {
     const std::lock_guard lock(mutex_);
-    if (!guest->question) {
+    if (!guest->waiting) {
       guest->working = false;
       return;
     }
-    question = *guest->question;
-    guest->question.reset();
+    question = *guest->waiting;
+    guest->waiting.reset();
     guest->interrupt = false;
   }
   try {
@@ -169,57 +148,12 @@ void LiveRoom::work(const std::shared_ptr<Guest>& guest) {
 }
 
 void LiveRoom::answer(Guest& guest, const Question& question) {
-  if (!guest.hip) {
-    guest.source = folder_.read_hip();
-    guest.surfaces["acetabular"] = body_surface(guest.source.model.acetabular_cartilage);
-    guest.surfaces["femoral"] = body_surface(guest.source.model.femoral_cartilage);
-    guest.hip = std::make_unique<joint::LiveHip>(guest.source.model, guest.source.load);
-  }
-  Monitor monitor;
-  if (question.exact) monitor.cancel_flag = &guest.interrupt;
-
+  if (!guest.hip) guest.seat(folder_);
   const auto start = Clock::now();
-  joint::LiveHip::Step step;
-  if (question.exact) {
-    step.frame = guest.hip->settle(monitor);
-  } else {
-    step = guest.hip->step_towards(question.target, monitor);
-  }
-  const double solved = milliseconds_since(start);
-  const auto packing = Clock::now();
-  const joint::FrameResult& frame = step.frame;
-  Json meta = meta_of(frame, guest.hip->angles());
-  meta["type"] = question.exact ? "settled" : "step";
-  meta["number"] = question.number;
-  meta["arrived"] = step.arrived;
-  meta["solver_ms"] = solved;
-
-  Arrays arrays;
-  if (frame.status == joint::FrameStatus::converged) {
-    const joint::JointModel& model = guest.source.model;
-    add_body(arrays, "acetabular", guest.surfaces["acetabular"],
-             model.acetabular_cartilage.points + frame.acetabular_displacement,
-             acetabular_values(model, frame, question.field));
-    add_body(arrays, "femoral", guest.surfaces["femoral"],
-             transformed(model.femoral_cartilage.points, frame.X_II) + frame.femoral_displacement,
-             femoral_values(model, frame, question.field));
-    meta["tets"] = model.acetabular_cartilage.n_tets() + model.femoral_cartilage.n_tets();
-    if (question.exact && guest.last) {
-      const auto moved = [](const Points& a, const Points& b) {
-        return (a - b).rowwise().norm().maxCoeff();
-      };
-      meta["live_peak_pressure_p99_MPa"] = guest.last->contact.peak_pressure_p99;
-      meta["live_contact_area_mm2"] = guest.last->contact.contact_area;
-      meta["largest_move_mm"] =
-          std::max(moved(frame.acetabular_displacement, guest.last->acetabular_displacement),
-                   moved(frame.femoral_displacement, guest.last->femoral_displacement));
-    }
-    guest.last = frame;
-  }
-  meta["packing_ms"] = milliseconds_since(packing);
-  Bundle bundle(meta.dump());
-  for (const auto& [key, values] : arrays) bundle.add(key, values);
-  send_(guest.client, {Message::Kind::binary, std::make_shared<const std::string>(bundle.bytes())});
+  const joint::LiveHip::Step step = guest.solve(question);
+  const double solver_ms = milliseconds_since(start);
+  send_(guest.client, {Message::Kind::binary, std::make_shared<const std::string>(
+                                                  guest.packed(question, step, solver_ms))});
 }
 
 void LiveRoom::send_text(ClientId client, const Json& json) {

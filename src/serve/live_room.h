@@ -23,8 +23,8 @@ class LiveRoom {
   LiveRoom(const CaseFolder& folder, Send send) : folder_(folder), send_(std::move(send)) {}
   ~LiveRoom();
 
-  /// A step towards a pose; the first one reads the hip and seats it. The answer carries the
-  /// contact pressure and `field`; computing all would take a fifth of the solver's time.
+  /// A step towards a pose; the first one reads the hip and seats it. The answer carries the values
+  /// of `field` alone; computing all would take a fifth of the solver's time.
   void pose(ClientId client, std::int64_t number, const motion::HipAngles& target,
             const std::string& field);
   /// The exact equilibrium at the present pose, with all fields.

@@ -50,7 +50,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
  private:
   struct Reply;
+  void on_header(ErrorCode error);
   void on_read(ErrorCode error);
+  bool broken(ErrorCode error);
+  /// Answers without the body having been read: the connection ends with it.
+  void refuse(int status, const std::string& why);
   void answer(Response response);
   std::string cookie_header() const;
 

@@ -47,40 +47,72 @@ std::string version_of(const fs::path& file) {
   return file.empty() || !fs::exists(file) ? "" : io::sha256_of_path(file);
 }
 
-}  // namespace
-
-Json stored_landmarks(const CaseFolder& folder) {
-  const fs::path file = folder.landmarks_file();
+Json stored_points(const fs::path& file, Json known) {
   Json list = Json::array();
   if (!file.empty()) {
     for (const auto& [name, p] : io::read_landmarks(file))
       list.push_back({{"name", name}, {"position_lps_mm", {p.x(), p.y(), p.z()}}});
   }
+  return {{"version", version_of(file)}, {"landmarks", list}, {"known", std::move(known)}};
+}
+
+std::map<std::string, Vec3> points_in(const Json& wanted) {
+  const Json& list = wanted.at("landmarks");
+  require(list.is_array() && list.size() <= kMostLandmarks, "landmarks must be a list of at most ",
+          kMostLandmarks);
+  std::map<std::string, Vec3> points;
+  for (const Json& entry : list) {
+    const std::string name = word(entry.at("name"));
+    const auto p = entry.at("position_lps_mm").get<std::array<double, 3>>();
+    const Vec3 place(p[0], p[1], p[2]);
+    require(place.allFinite() && place.norm() < kFarthest, name, " has no place in the image");
+    require(points.emplace(name, place).second, "the landmark ", name, " comes twice");
+  }
+  return points;
+}
+
+}  // namespace
+
+Json stored_landmarks(const CaseFolder& folder) {
   const CaseInput in = folder.input();
   Json known = Json::array();
   for (const char* name : kKnown) {
     known.push_back(in.side ? std::string(name) + (*in.side == Side::left ? "_left" : "_right")
                             : std::string(name));
   }
-  return {{"version", version_of(file)}, {"landmarks", list}, {"known", known}};
+  return stored_points(folder.landmarks_file(), std::move(known));
 }
 
 std::optional<Json> store_landmarks(const CaseFolder& folder, const Json& wanted) {
   if (wanted.at("version").get<std::string>() != version_of(folder.landmarks_file()))
     return std::nullopt;
-  const Json& list = wanted.at("landmarks");
-  require(list.is_array() && list.size() <= kMostLandmarks, "landmarks must be a list of at most ",
-          kMostLandmarks);
-  std::map<std::string, Vec3> landmarks;
-  for (const Json& entry : list) {
-    const std::string name = word(entry.at("name"));
-    const auto p = entry.at("position_lps_mm").get<std::array<double, 3>>();
-    const Vec3 place(p[0], p[1], p[2]);
-    require(place.allFinite() && place.norm() < kFarthest, name, " has no place in the image");
-    require(landmarks.emplace(name, place).second, "the landmark ", name, " comes twice");
-  }
-  io::write_landmarks(folder.folder() / "landmarks.mrk.json", landmarks);
+  io::write_landmarks(folder.folder() / "landmarks.mrk.json", points_in(wanted));
   return stored_landmarks(folder);
+}
+
+Json stored_pins(const CaseFolder& folder) {
+  Json known = Json::array();
+  for (const char* name : kStructures) known.push_back(name);
+  return stored_points(folder.pins_file(), std::move(known));
+}
+
+std::optional<Json> store_pins(const CaseFolder& folder, const Json& wanted) {
+  if (wanted.at("version").get<std::string>() != version_of(folder.pins_file()))
+    return std::nullopt;
+  const std::map<std::string, Vec3> pins = points_in(wanted);
+  for (const auto& [name, place] : pins) {
+    const std::string structure = name.substr(0, name.rfind('-'));
+    require(structure != name &&
+                std::count(std::begin(kStructures), std::end(kStructures), structure) > 0,
+            "a pin is named <structure>-<number>, as femur-1; got ", name);
+  }
+  const fs::path file = folder.folder() / "pins.mrk.json";
+  if (pins.empty()) {
+    fs::remove(file);
+  } else {
+    io::write_landmarks(file, pins);
+  }
+  return stored_pins(folder);
 }
 
 Json store_movement(const CaseFolder& folder, const Json& wanted) {
@@ -112,19 +144,22 @@ Json store_movement(const CaseFolder& folder, const Json& wanted) {
 std::function<void(const Monitor&)> job_body(const CaseFolder& folder, const Json& job) {
   const std::string name = job.at("job").get<std::string>();
   const CaseInput in = folder.input();
-  const fs::path landmarks = folder.landmarks_file(), out = folder.folder();
+  const fs::path landmarks = folder.landmarks_file(), pins = folder.pins_file(),
+                 out = folder.folder();
   require(name == "segment" || name == "run", "there is no job \"", name, "\"");
   require(!in.images.empty(), in.fault);
   if (name == "run") {
     require(in.subject.has_value(), "the whole chain needs a subject.toml with a movement");
-    return [subject = *in.subject, landmarks, out](const Monitor& monitor) mutable {
+    return [subject = *in.subject, landmarks, pins, out](const Monitor& monitor) mutable {
       if (!landmarks.empty()) subject.landmarks = landmarks;
+      subject.pins = pins;
       pipeline::run_subject(subject, out, {}, monitor);
     };
   }
   pipeline::SegmentRequest request;
   request.images = in.images;
   request.landmarks = landmarks;
+  request.pins = pins;
   request.atlas = in.subject ? in.subject->atlas : pipeline::shipped_data("atlas/hip.coxa-atlas");
   if (in.side) {
     request.side = *in.side;

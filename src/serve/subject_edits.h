@@ -19,12 +19,19 @@ nlohmann::json stored_landmarks(const CaseFolder& folder);
 std::optional<nlohmann::json> store_landmarks(const CaseFolder& folder,
                                               const nlohmann::json& wanted);
 
+/// The same for the points that surfaces must pass through, pins.mrk.json; "known" are the
+/// structures, and a name is a structure's with a dash and a number. An empty list removes the
+/// file.
+nlohmann::json stored_pins(const CaseFolder& folder);
+std::optional<nlohmann::json> store_pins(const CaseFolder& folder, const nlohmann::json& wanted);
+
 /// Writes movements/<name>.toml of {"name", "time_s", "flexion_deg", "adduction_deg",
 /// "internal_rotation_deg"}, in the form of data/movements.
 /// @returns {"file": path in the folder}
 nlohmann::json store_movement(const CaseFolder& folder, const nlohmann::json& wanted);
 
-/// What the job {"job": "segment", "side"} or {"job": "run"} does; the landmarks are the folder's.
+/// What the job {"job": "segment", "side"} or {"job": "run"} does; landmarks and pins
+/// are the folder's.
 /// @throws Error bad_input if it cannot be done on this folder
 std::function<void(const Monitor&)> job_body(const CaseFolder& folder, const nlohmann::json& job);
 

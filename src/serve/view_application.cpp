@@ -11,6 +11,7 @@
 #include "job_runner.h"
 #include "live_room.h"
 #include "subject_edits.h"
+#include "uploads.h"
 
 namespace coxa::serve {
 namespace fs = std::filesystem;
@@ -72,13 +73,16 @@ double angle_of(const Json& json, const char* key) {
 
 struct ViewApplication::Impl {
   CaseFolder folder;
+  std::optional<CaseFolder> other;  ///< a second result, to compare with; only read
   fs::path web_root;
+  Uploads uploads{folder};
   Server* server = nullptr;
   LiveRoom live;
   JobRunner jobs;
 
-  Impl(const fs::path& subject, const fs::path& web)
+  Impl(const fs::path& subject, const fs::path& web, const fs::path& compared)
       : folder(subject),
+        other(compared.empty() ? std::nullopt : std::optional<CaseFolder>(compared)),
         web_root(web),
         live(folder,
              [this](ClientId client, Message message) {
@@ -98,6 +102,7 @@ struct ViewApplication::Impl {
 
   Response read(const Request& request);
   Response write(const Request& request);
+  Response edited(const char* what, const std::optional<Json>& stored);
   void act(ClientId client, const Json& json);
   void start_job(ClientId client, const Json& json);
 };
@@ -105,12 +110,20 @@ struct ViewApplication::Impl {
 Response ViewApplication::Impl::read(const Request& request) {
   const std::string& path = request.path;
   const auto asked = [&](const char* key) { return query_value(request.query, key); };
-  if (path == "/api/case") return json_response(folder.overview());
-  if (path == "/api/surface") return bundle_response(folder.surface(asked("name")));
-  if (path == "/api/body") return bundle_response(folder.body(asked("name")));
-  if (path == "/api/frame") return bundle_response(folder.frame(index_of(asked("index"))));
+  const bool of_other = asked("of") == "other";
+  require(!of_other || other.has_value(), "there is no second result to compare with");
+  const CaseFolder& source = of_other ? *other : folder;
+  if (path == "/api/case") {
+    Json json = source.overview();
+    if (other && !of_other) json["other"] = other->folder().filename().string();
+    return json_response(json);
+  }
+  if (path == "/api/surface") return bundle_response(source.surface(asked("name")));
+  if (path == "/api/body") return bundle_response(source.body(asked("name")));
+  if (path == "/api/frame") return bundle_response(source.frame(index_of(asked("index"))));
   if (path == "/api/image") return bundle_response(folder.image());
   if (path == "/api/landmarks") return json_response(stored_landmarks(folder));
+  if (path == "/api/pins") return json_response(stored_pins(folder));
   if (path == "/api/job") return json_response(jobs.state());
   if (path.starts_with("/api/")) return error_response(404, "there is no such request");
   if (path.starts_with("/files/"))
@@ -118,16 +131,29 @@ Response ViewApplication::Impl::read(const Request& request) {
   return file_response(web_root, path == "/" ? "index.html" : path, false);
 }
 
+/// Points that were changed, told to the other windows; 409 where one of them was faster.
+Response ViewApplication::Impl::edited(const char* what, const std::optional<Json>& stored) {
+  if (!stored)
+    return error_response(409, std::string("another window changed the ") + what + " meanwhile");
+  tell_all({{"type", what}, {"version", stored->at("version")}});
+  return json_response(*stored);
+}
+
 Response ViewApplication::Impl::write(const Request& request) {
+  if (request.path == "/api/upload") {
+    return json_response(uploads.add(query_value(request.query, "batch"),
+                                     query_value(request.query, "name"), request.body));
+  }
   const Json body = Json::parse(request.body, nullptr, false);
   if (body.is_discarded()) return error_response(400, "the body is not JSON");
-  if (request.path == "/api/landmarks") {
-    const auto stored = store_landmarks(folder, body);
-    if (!stored) return error_response(409, "another window changed the landmarks meanwhile");
-    tell_all({{"type", "landmarks"}, {"version", stored->at("version")}});
-    return json_response(*stored);
-  }
+  if (request.path == "/api/landmarks") return edited("landmarks", store_landmarks(folder, body));
+  if (request.path == "/api/pins") return edited("pins", store_pins(folder, body));
   if (request.path == "/api/movement") return json_response(store_movement(folder, body));
+  if (request.path == "/api/image") {
+    const Json taken = uploads.take(body);
+    tell_all({{"type", "image"}});
+    return json_response(taken);
+  }
   return error_response(404, "there is nothing to write there");
 }
 
@@ -157,12 +183,13 @@ void ViewApplication::Impl::act(ClientId client, const Json& json) {
   }
 }
 
-ViewApplication::ViewApplication(const fs::path& folder, const fs::path& web_root) {
+ViewApplication::ViewApplication(const fs::path& folder, const fs::path& web_root,
+                                 const fs::path& other) {
   if (!fs::exists(web_root / "index.html")) {
     fail(coxa::ErrorCode::bad_file, web_root.string(),
          " holds no built web application; make web builds it");
   }
-  impl_ = std::make_unique<Impl>(folder, web_root);
+  impl_ = std::make_unique<Impl>(folder, web_root, other);
 }
 ViewApplication::~ViewApplication() = default;
 
@@ -180,6 +207,10 @@ Response ViewApplication::respond(const Request& request) {
   } catch (const std::exception& error) {
     return error_response(500, std::string("internal error: ") + error.what());
   }
+}
+
+std::size_t ViewApplication::body_limit(const std::string& path) const {
+  return path == "/api/upload" ? Uploads::kLargestFile : 0;
 }
 
 void ViewApplication::opened(ClientId client) {

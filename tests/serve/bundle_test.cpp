@@ -39,5 +39,31 @@ TEST(Bundle, HoldsWhatWasPutIntoItOnFourByteBounds) {
   EXPECT_EQ(corner, 9u);
 }
 
+TEST(Bundle, HoldsNumbersInStepsOfTheirRange) {
+  MatX values(3, 2);
+  values << -3.0, 5.0, 1.25, kNaN, 0.0, 4.999;
+  Bundle bundle;
+  bundle.add_in_steps("values", values);
+  const std::string bytes = bundle.bytes();
+  std::uint32_t length = 0;
+  std::memcpy(&length, bytes.data() + 4, 4);
+  const auto entry = nlohmann::json::parse(bytes.substr(8, length))["arrays"][0];
+  EXPECT_EQ(entry["type"], "steps16");
+  for (int i = 0; i < 6; ++i) {
+    std::uint16_t q = 0;
+    std::memcpy(&q, bytes.data() + 8 + length + 2 * i, 2);
+    const double wanted = values(i / 2, i % 2);
+    if (wanted != wanted) {
+      EXPECT_EQ(q, 65535);
+    } else {
+      EXPECT_NEAR(entry["low"].get<double>() + q * entry["step"].get<double>(), wanted,
+                  8.0 / 131000);
+    }
+  }
+  Bundle flat;
+  flat.add_in_steps("none", MatX::Constant(2, 1, kNaN));
+  EXPECT_EQ(flat.bytes().substr(0, 4), "CXB1");
+}
+
 }  // namespace
 }  // namespace coxa::serve

@@ -1,15 +1,8 @@
-#include <coxa/serve/view_application.h>
-
 #include <coxa/core/error.h>
 #include <coxa/io/landmarks.h>
 #include <coxa/io/movement_files.h>
-#include <coxa/io/surfaces.h>
-#include <coxa/io/volumes.h>
-#include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
-#include "serve/client.h"
+#include "serve/viewing.h"
 
 namespace coxa::serve {
 namespace {
@@ -17,37 +10,17 @@ using Json = nlohmann::json;
 using boost::beast::http::verb;
 
 /// A subject's folder just begun: an image, and one surface.
-class Viewing : public ::testing::Test {
- protected:
-  test::TempFolder folder{"coxa_view"}, web{"coxa_web"};
-  std::unique_ptr<ViewApplication> application;
-  std::unique_ptr<test::RunningServer> http;
-
-  void SetUp() override {
-    io::write_bytes(web.path / "index.html", "<!doctype html>");
+class Viewing : public test::Viewing {
+  void fill() override {
     io::write_bytes(web.path / "assets/main.js", "1");
     io::write_bytes(folder.path / "report/report.html", "<style></style>");
-    Volume volume;
-    volume.size = {4, 3, 2};
-    volume.origin = {-1.0, -2.0, -3.0};
-    for (int i = 0; i < 24; ++i) volume.values.push_back(static_cast<float>(i - 5));
-    io::write_volume(folder.path / "t1.nii.gz", volume, io::VoxelType::int16);
+    io::write_volume(folder.path / "t1.nii.gz", test::tiny_volume(), io::VoxelType::int16);
     TriMesh mesh;
     mesh.points.resize(4, 3);
     mesh.points << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
     mesh.triangles.resize(4, 3);
     mesh.triangles << 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3;
     io::write_surface(folder.path / "segment/femur.vtp", mesh);
-    application = std::make_unique<ViewApplication>(folder.path, web.path);
-    http = std::make_unique<test::RunningServer>(*application);
-    application->connect(http->server);
-  }
-  void TearDown() override { http.reset(); }
-
-  Json get(const std::string& target) { return Json::parse(http->get(target).body()); }
-  boost::beast::http::response<boost::beast::http::string_body> put(const std::string& target,
-                                                                    const Json& body) {
-    return http->ask(verb::put, target, {}, body.dump());
   }
 };
 
@@ -116,6 +89,56 @@ TEST_F(Viewing, RefusesLandmarksThatAreNone) {
   EXPECT_EQ(status("none"), 400u);
   EXPECT_EQ(http->ask(verb::put, "/api/landmarks", {}, "{").result_int(), 400u);
   EXPECT_FALSE(std::filesystem::exists(folder.path / "landmarks.mrk.json"));
+}
+TEST_F(Viewing, KeepsPinsOfKnownStructures) {
+  EXPECT_EQ(get("/api/pins")["landmarks"], Json::array());
+  const auto wanted = [&](const std::string& name) {
+    return Json{{"version", get("/api/pins")["version"]},
+                {"landmarks", {{{"name", name}, {"position_lps_mm", {1, 2, 3}}}}}};
+  };
+  for (const char* name : {"femur", "femur1", "-1", "sacrum-1", "../femur-1"})
+    EXPECT_EQ(put("/api/pins", wanted(name)).result_int(), 400u) << name;
+  EXPECT_EQ(put("/api/pins", wanted("acetabular_cartilage-2")).result_int(), 200u);
+  EXPECT_EQ(io::read_landmarks(folder.path / "pins.mrk.json").at("acetabular_cartilage-2"),
+            Vec3(1, 2, 3));
+  Json none = wanted("");
+  EXPECT_EQ(put("/api/pins", {{"version", ""}, {"landmarks", Json::array()}}).result_int(), 409u);
+  none["landmarks"] = Json::array();
+  EXPECT_EQ(put("/api/pins", none).result_int(), 200u);
+  EXPECT_FALSE(std::filesystem::exists(folder.path / "pins.mrk.json"));
+}
+TEST_F(Viewing, HasBandsOfNormalGaitThatSurroundTheMovement) {
+  const Json curves = get("/api/case")["normal_curves"];
+  const auto gait =
+      io::read_pattern(std::filesystem::path(COXA_SOURCE_DIR) / "data/movements/gait.toml");
+  ASSERT_EQ(curves.size(), 3u);
+  for (const Json& curve : curves) {
+    EXPECT_EQ(curve["movement"], "gait");
+    EXPECT_NE(curve["source"].get<std::string>().find("Schwartz"), std::string::npos);
+    for (std::size_t k = 1; k + 1 < gait.poses.size(); ++k) {
+      const motion::HipAngles& a = gait.poses[k].angles;
+      const double mean = degrees(curve["angle"] == "flexion_deg"     ? a.flexion
+                                  : curve["angle"] == "adduction_deg" ? a.adduction
+                                                                      : a.internal_rotation);
+      EXPECT_EQ(curve["percent"][k].get<double>(), 4.0 * static_cast<double>(k));
+      EXPECT_NEAR(0.5 * (curve["low"][k].get<double>() + curve["high"][k].get<double>()), mean,
+                  0.015);
+    }
+  }
+}
+TEST_F(Viewing, ShowsASecondResultOnlyWhereOneWasGiven) {
+  EXPECT_EQ(http->status("/api/case?of=other"), 400);
+  test::TempFolder second("coxa_second");
+  ViewApplication both(folder.path, web.path, second.path);
+  test::RunningServer server(both);
+  EXPECT_EQ(Json::parse(server.get("/api/case").body())["other"], second.path.filename().string());
+  const Json other = Json::parse(server.get("/api/case?of=other").body());
+  EXPECT_EQ(other["surfaces"], Json::array());
+  EXPECT_FALSE(other.contains("other"));
+  EXPECT_EQ(server.status("/api/surface?name=femur"), 200);
+  EXPECT_EQ(server.status("/api/surface?of=other&name=femur"), 404);
+  // the second is looked at, not edited, and its files are not served
+  EXPECT_EQ(server.status("/files/../" + second.path.filename().string() + "/x"), 404);
 }
 TEST_F(Viewing, SavesARecordedMovementInTheFormOfTheOthers) {
   const Json movement{{"name", "by_hand"},

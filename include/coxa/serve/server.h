@@ -37,7 +37,13 @@ class Application {
   virtual ~Application() = default;
   /// Answers one request; may take long. Called on a thread of its own, one request at a time.
   virtual Response respond(const Request& request) = 0;
-  /// The three below are called on the network thread and must return at once.
+  /// Bytes that the body of a PUT to `path` may have where that is more than the server's usual
+  /// limit; 0: the usual one. Called on the network thread, for requests that are let in.
+  virtual std::size_t body_limit(const std::string& path) const {
+    (void)path;
+    return 0;
+  }
+  /// The three at the end are called on the network thread and must return at once.
   virtual void opened(ClientId client) = 0;
   virtual void closed(ClientId client) = 0;
   virtual void received(ClientId client, std::string text) = 0;
@@ -51,7 +57,9 @@ struct ServerOptions {
   std::size_t max_message = 64u << 10;  ///< bytes of a WebSocket message from the browser
   std::size_t max_queue = 64u << 20;  ///< bytes waiting for one slow browser, which is then dropped
   int max_connections = 128;          ///< more are closed at once
-  int timeout_seconds = 30;           ///< a request that takes longer to arrive is dropped
+  /// A request whose head, or whose body within the usual limit, takes longer to arrive is dropped;
+  /// a larger body has ten times as long.
+  int timeout_seconds = 30;
 };
 
 /// HTTP and WebSocket server of one application.
