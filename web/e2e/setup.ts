@@ -1,3 +1,4 @@
+import axe from "axe-core";
 import { spawn, type ChildProcess } from "node:child_process";
 import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { resolve } from "node:path";
@@ -36,6 +37,45 @@ export async function prepareCase(): Promise<string> {
   return result;
 }
 
+/** A second result of the same patient: twice the force, one frame less; what both share is taken over. */
+export async function prepareOther(): Promise<string> {
+  const first = await prepareCase();
+  const target = resolve(folder, "other");
+  const subject = resolve(folder, "patient/other.toml");
+  if (!existsSync(subject)) {
+    const text = readFileSync(resolve(folder, "patient/subject.toml"), "utf8").replace(/frames = .*/, "frames = 3");
+    writeFileSync(subject, /force_N = .*/.test(text) ? text.replace(/force_N = .*/, "force_N = 1000") : `${text}\n[joint]\nforce_N = 1000\n`);
+  }
+  if (!existsSync(target)) cpSync(first, target, { recursive: true });
+  await run("run", subject, "--out", target, "--resume");
+  return target;
+}
+
+/** A copy of the finished result, to be changed. */
+export function copyCase(name: string, without: string[]): string {
+  const target = resolve(folder, name);
+  rmSync(target, { recursive: true, force: true });
+  cpSync(resolve(folder, "result"), target, { recursive: true });
+  for (const part of without) rmSync(resolve(target, part), { recursive: true, force: true });
+  return target;
+}
+
+/** An empty folder. */
+export function emptyFolder(name: string): string {
+  const target = resolve(folder, name);
+  rmSync(target, { recursive: true, force: true });
+  mkdirSync(target, { recursive: true });
+  return target;
+}
+
+/** Serious faults that axe finds on the page. */
+export async function seriousFaults(page: Page): Promise<string[]> {
+  // run in the page by the debugger's own door: the content security policy holds for the page alone
+  await page.evaluate(axe.source);
+  const found = (await page.evaluate("axe.run()")) as axe.AxeResults;
+  return found.violations.filter((v) => v.impact === "serious" || v.impact === "critical").map((v) => `${v.id}: ${v.nodes.map((n) => n.html).join(" | ")}`);
+}
+
 /** A subject just begun: the image alone, and landmarks that are still to be placed or are there. */
 export function beginSubject(name: string, withLandmarks: boolean): string {
   const target = resolve(folder, name);
@@ -49,12 +89,15 @@ export function beginSubject(name: string, withLandmarks: boolean): string {
 export interface Served {
   url: string;
   port: number;
+  pid: number;
   stop(): Promise<void>;
+  /** Ends it at once, as a crash would. */
+  kill(): Promise<void>;
 }
 
 /** coxa view on a folder. */
-export async function serve(subject: string, port = 0): Promise<Served> {
-  const child: ChildProcess = spawn(coxa, ["view", subject, "--port", String(port), "--json"], { stdio: ["ignore", "pipe", "inherit"] });
+export async function serve(subject: string, port = 0, more: string[] = []): Promise<Served> {
+  const child: ChildProcess = spawn(coxa, ["view", subject, "--port", String(port), "--json", ...more], { stdio: ["ignore", "pipe", "inherit"] });
   const url = await new Promise<string>((done, fail) => {
     let text = "";
     child.stdout?.on("data", (chunk: Buffer) => {
@@ -64,13 +107,13 @@ export async function serve(subject: string, port = 0): Promise<Served> {
     });
     child.on("exit", (code) => fail(new Error(`coxa view ended with ${code}`)));
   });
-  const stop = (): Promise<void> =>
+  const end = (signal: NodeJS.Signals): Promise<void> =>
     new Promise((done) => {
       if (child.exitCode !== null || child.signalCode !== null) return done();
       child.once("exit", () => done());
-      child.kill("SIGTERM");
+      child.kill(signal);
     });
-  return { url, port: Number(new URL(url).port), stop };
+  return { url, port: Number(new URL(url).port), pid: child.pid ?? 0, stop: () => end("SIGTERM"), kill: () => end("SIGKILL") };
 }
 
 export function launch(): Promise<Browser> {

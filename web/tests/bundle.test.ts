@@ -30,3 +30,9 @@ test("what is no bundle is refused", () => {
   expect(() => decodeBundle(new TextEncoder().encode("<!doctype").buffer as ArrayBuffer)).toThrow("no bundle");
   expect(() => decodeBundle(packed({ meta: {}, arrays: [{ name: "a", type: "float16", rows: 1, columns: 1, offset: 0 }] }, []))).toThrow("unknown type");
 });
+
+test("numbers in steps of 16 bits come as numbers, NaN where there is none", () => {
+  const data = [...new Uint8Array(new Uint16Array([0, 2, 65535, 4]).buffer)];
+  const bundle = decodeBundle(packed({ meta: {}, arrays: [{ name: "p", type: "steps16", rows: 2, columns: 2, offset: 0, low: -1, step: 0.5 }] }, data));
+  expect([...floats(bundle, "p")]).toEqual([-1, 0, NaN, 1]);
+});

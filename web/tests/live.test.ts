@@ -9,6 +9,7 @@ const pose = (flexion: number): Pose => ({ flexion_deg: flexion, adduction_deg: 
 const answerTo = (number: number, meta: Record<string, unknown> = {}): Bundle => ({
   meta: { type: "step", number, status: "converged", arrived: true, reason: "", ...pose(0), ...meta },
   arrays: new Map(),
+  bytes: 0,
 });
 
 let sent: Record<string, unknown>[] = [];

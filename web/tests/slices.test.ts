@@ -1,6 +1,7 @@
 import { expect, test } from "vitest";
 import type { Vec3 } from "../src/core/case";
 import { contour } from "../src/slices/contour";
+import { sliceCorners } from "../src/slices/slice_planes";
 import { drawSlice, gridAxes, indexOf, placeOf, sliceAxes, type Volume } from "../src/slices/volume";
 
 const c = Math.cos(0.2);
@@ -78,4 +79,15 @@ test("a tetrahedron is cut in a triangle of known length, whatever vertices lie 
   expect(total(0)).toBeCloseTo(0); // vertices on the plane count as above: nothing lies below
   expect(total(2)).toBeCloseTo(0);
   expect(total(3)).toBe(0);
+});
+test("a slice stands in the view where it was taken: its corners are those of the picture", () => {
+  const v = volume();
+  const axes = sliceAxes(v, "axial"); // left to right: towards the left (L); top to bottom: to the back (P)
+  const [topLeft, topRight, bottomLeft, bottomRight] = sliceCorners(v, axes, 1);
+  expect(topRight[0] - topLeft[0]).toBeCloseTo(2 * 3);
+  expect(bottomLeft[1] - topLeft[1]).toBeCloseTo(4 * c);
+  topLeft.forEach((x, i) => expect(x + (bottomRight[i] ?? 0)).toBeCloseTo((topRight[i] ?? 0) + (bottomLeft[i] ?? 0)));
+  // half a voxel outside the first voxel's centre
+  expect(indexOf(v, topLeft)[2]).toBeCloseTo(-0.5);
+  expect(indexOf(v, topLeft)[1]).toBeCloseTo(1);
 });

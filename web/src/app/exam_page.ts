@@ -16,6 +16,7 @@ const kAxes: { key: keyof Pose; label: string; min: number; max: number }[] = [
 ];
 const kRest: Pose = { flexion_deg: 0, adduction_deg: 0, internal_rotation_deg: 0 };
 const kDegreesPerPixel = 0.25;
+const kTellEvery = 150; // ms: nobody reads numbers faster
 
 /** The live examination: the leg led by sliders or the mouse, the real solver answering. */
 export class ExamPage {
@@ -33,7 +34,9 @@ export class ExamPage {
   private replay: ReturnType<typeof setInterval> | undefined;
   private arrivals: number[] = [];
   private drawMs = 0;
+  private lastTimes: Partial<Record<string, number>> = {};
   private dragging = false;
+  private told = 0;
   answers = 0;
 
   constructor(
@@ -206,10 +209,24 @@ export class ExamPage {
     if (this.recorder.recording) this.describeRecord();
     const javascript = performance.now() - start;
     this.arrivals = [...this.arrivals, start].slice(-20);
-    this.tell(answer, javascript);
+    this.noteTimes(answer, javascript);
+    const last = answer.type === "settled" || answer.arrived || answer.status !== "converged";
+    if (!last && start - this.told < kTellEvery) return;
+    this.told = start;
+    this.tell(answer);
   }
 
-  private tell(answer: Answer, javascript: number): void {
+  private noteTimes(answer: Answer, javascript: number): void {
+    const at = (key: string): number => Number(answer.bundle.meta[key] ?? NaN);
+    const [solver, packing] = [at("solver_ms"), at("packing_ms")];
+    const transfer = Math.max(0, answer.roundTripMs - solver - packing);
+    const span = (this.arrivals.at(-1) ?? 0) - (this.arrivals[0] ?? 0);
+    const rate = this.arrivals.length > 1 ? (1000 * (this.arrivals.length - 1)) / span : NaN;
+    this.lastTimes = { solver, packing, transfer, javascript, drawing: this.drawMs, rate, tets: at("tets"), bytes: answer.bundle.bytes, answers: this.answers };
+    this.times.dataset["times"] = JSON.stringify(this.lastTimes);
+  }
+
+  private tell(answer: Answer): void {
     const meta = answer.bundle.meta as Record<string, number | null>;
     const number = (key: string): number => meta[key] ?? NaN;
     const { flexion_deg, adduction_deg, internal_rotation_deg } = answer.pose;
@@ -235,20 +252,17 @@ export class ExamPage {
     }
     if (answer.type === "settled" && answer.status === "converged") this.compare(number);
     else if (answer.type === "step") this.exactness.textContent = "Led by hand, to a loose tolerance; at rest it is compared with the full solution.";
-    const solver = number("solver_ms");
-    const packing = number("packing_ms");
-    const transfer = Math.max(0, answer.roundTripMs - solver - packing);
-    const span = (this.arrivals.at(-1) ?? 0) - (this.arrivals[0] ?? 0);
+    const { solver = NaN, packing = NaN, transfer = NaN, javascript = NaN, rate = NaN, tets = NaN, bytes = NaN } = this.lastTimes;
     this.rows(this.times, [
       ["Solver", solver, ""],
       ["Fields and packing", packing, ""],
       ["Transfer and waiting", transfer, ""],
       ["JavaScript", javascript, ""],
       [this.viewer.software ? "Drawing (no graphics card)" : "Drawing", this.drawMs, ""],
-      ["Updates a second", this.arrivals.length > 1 ? (1000 * (this.arrivals.length - 1)) / span : NaN, ""],
-      ["Tetrahedra", number("tets"), ""],
+      ["Updates a second", rate, ""],
+      ["Kilobytes an answer", bytes / 1000, ""],
+      ["Tetrahedra", tets, ""],
     ]);
-    this.times.dataset["times"] = JSON.stringify({ solver, packing, transfer, javascript, drawing: this.drawMs });
   }
 
   private compare(number: (key: string) => number): void {

@@ -1,6 +1,6 @@
 import { ColourBar } from "../colour/bar";
 import type { MapName } from "../colour/maps";
-import type { Scale } from "../colour/scale";
+import { rangeOf, type Scale } from "../colour/scale";
 import { readable, type Case } from "../core/case";
 import { labelled, make, select } from "../core/dom";
 import type { Bundle } from "../core/bundle";
@@ -19,6 +19,8 @@ export class FieldChoice {
   readonly bar = new ColourBar();
   scale: Scale | null = null;
   field: string | null = null;
+  /** A second result, coloured alike: one range for both. */
+  second: { hip: HipModel; frames: () => Bundle[] } | null = null;
   private map: MapName = "viridis";
   private readonly ranges = new Map<string, [number, number]>();
   private mode: RangeMode = "fixed";
@@ -67,6 +69,7 @@ export class FieldChoice {
   apply(): void {
     this.scale = this.field ? this.scaleOf(this.field) : null;
     this.hip.colour(this.field, this.scale);
+    this.second?.hip.colour(this.field, this.scale);
     this.bar.show(this.scale);
   }
 
@@ -78,15 +81,20 @@ export class FieldChoice {
   /** Over all frames that are here; worked out again only when another has come. */
   private fixedRange(field: string): [number, number] {
     const frames = this.frames();
-    const key = `${field} ${frames.length}`;
+    const others = this.second?.frames() ?? [];
+    const key = `${field} ${frames.length} ${others.length}`;
     let found = this.ranges.get(key);
-    if (!found) this.ranges.set(key, (found = this.hip.range(field, frames)));
+    if (!found) this.ranges.set(key, (found = this.rangeOver(field, frames, others)));
     return found;
+  }
+
+  private rangeOver(field: string, frames: Bundle[], others: Bundle[]): [number, number] {
+    return rangeOf([...this.hip.arrays(field, frames), ...(this.second?.hip.arrays(field, others) ?? [])]);
   }
 
   private scaleOf(field: string): Scale {
     const typed: [number, number] = [this.low.valueAsNumber, this.high.valueAsNumber];
-    let [low, high] = this.mode === "fixed" ? this.fixedRange(field) : this.hip.range(field, []);
+    let [low, high] = this.mode === "fixed" ? this.fixedRange(field) : this.rangeOver(field, [], []);
     if (this.mode === "own" && typed[1] > typed[0]) [low, high] = typed;
     else {
       this.low.value = low.toPrecision(3);

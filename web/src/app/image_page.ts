@@ -1,13 +1,15 @@
-import { api, ServerError, type Landmark } from "../core/api";
+import { api, type Landmark } from "../core/api";
 import { floats, triangles } from "../core/bundle";
 import type { Case, Vec3 } from "../core/case";
 import { button, byId, labelled, make, range, say } from "../core/dom";
-import { LandmarkList } from "../landmarks/landmark_list";
+import { PinPanel } from "../landmarks/pin_panel";
+import { PointStore } from "../landmarks/point_store";
 import { SliceView, type SliceState } from "../slices/slice_view";
-import { indexOf, placeOf, volumeFrom, type Orientation } from "../slices/volume";
+import { indexOf, placeOf, type Orientation, type Volume } from "../slices/volume";
 import type { HipModel } from "../scene/hip_model";
 import type { Viewer } from "../scene/viewer";
 import { JobPanel } from "./job_panel";
+import { UploadPanel } from "./upload_panel";
 
 /** Slices of the MRI with landmarks and contours, and the runs that start from them. */
 export class ImagePage {
@@ -16,11 +18,10 @@ export class ImagePage {
   readonly jobs: JobPanel;
   state: SliceState | null = null;
   views: SliceView[] = [];
-  readonly list = new LandmarkList();
-  private version = "";
-  private known: string[] = [];
-  private saving = false;
-  private saveAgain = false;
+  readonly landmarks: PointStore;
+  readonly pins: PinPanel;
+  /** The window (level and width) is another. */
+  onWindow: ((window: [number, number]) => void) | null = null;
   private readonly entries = make("ul", { class: "landmarks" });
   private readonly undoButton = button("Undo", () => this.step("undo"));
   private readonly redoButton = button("Redo", () => this.step("redo"));
@@ -32,10 +33,13 @@ export class ImagePage {
     private readonly info: Case,
     private readonly viewer: Viewer,
     private readonly hip: HipModel,
+    private readonly volume: () => Promise<Volume>,
     send: (message: Record<string, unknown>) => boolean,
   ) {
+    this.landmarks = new PointStore({ what: "Landmarks", load: () => api.landmarks(), save: (version, points) => api.saveLandmarks(version, points) }, () => this.showList());
+    this.pins = new PinPanel(() => this.state?.focus ?? [0, 0, 0], () => this.showPins(), (place) => this.moveFocus(place));
     this.jobs = new JobPanel(info, send);
-    this.side.append(this.jobs.element);
+    if (info.image) this.side.append(this.jobs.element);
     document.addEventListener("keydown", (event) => {
       if (document.body.dataset["page"] !== "image" || !(event.ctrlKey || event.metaKey)) return;
       if (event.key === "z") this.step("undo");
@@ -48,17 +52,19 @@ export class ImagePage {
     if (this.opened) return;
     this.opened = true;
     if (!this.info.image) {
-      this.panel.append(make("p", { class: "bad" }, `No image: ${this.info.image_fault}`));
+      this.panel.append(make("p", { class: "note" }, `No image: ${this.info.image_fault}`));
+      byId("slices").replaceChildren(new UploadPanel(this.info.movements, byId("main"), () => location.reload()).element);
       return;
     }
     say("Reading the image …");
     try {
-      const volume = volumeFrom(await api.image());
+      const volume = await this.volume();
       const focus = placeOf(volume, volume.size.map((n) => (n - 1) / 2) as Vec3);
-      this.state = { volume, focus, window: [...volume.window], landmarks: [], selected: null, outlines: [] };
+      this.state = { volume, focus, window: [...volume.window], landmarks: [], pins: [], selected: null, outlines: [] };
       this.buildViews(this.state);
       this.buildPanel(this.state);
-      await this.load();
+      await Promise.all([this.landmarks.load(), this.pins.store.load()]);
+      this.suggestName();
       this.updateOutlines();
       const head = this.list.landmarks.find((l) => l.name.startsWith("femoral_head_centre")) ?? this.list.landmarks[0];
       if (head) this.moveFocus(head.position_lps_mm);
@@ -82,11 +88,8 @@ export class ImagePage {
     this.redraw();
   }
 
-  /** Another window has changed them. */
-  async changedElsewhere(version: string): Promise<void> {
-    if (!this.state || this.saving || version === this.version) return;
-    await this.load();
-    say("The landmarks were changed in another window.");
+  private get list(): PointStore["list"] {
+    return this.landmarks.list;
   }
 
   private buildViews(state: SliceState): void {
@@ -120,7 +123,8 @@ export class ImagePage {
       this.nameInput,
       make("div", { class: "buttons" }, place, rename, this.undoButton, this.redoButton),
       this.entries,
-      make("p", { class: "note" }, "Click a slice to move the cross-hair, drag a landmark to move it, wheel for slices, right drag for the window. Every change is saved at once."),
+      this.pins.element,
+      make("p", { class: "note" }, "Click a slice to move the cross-hair, drag a landmark or pin to move it, wheel for slices, right drag for the window. Every change is saved at once."),
     );
   }
 
@@ -141,6 +145,7 @@ export class ImagePage {
     this.state.window = window;
     this.windowInputs.level.value = String((window[0] + window[1]) / 2);
     this.windowInputs.width.value = String(window[1] - window[0]);
+    this.onWindow?.(window);
     this.redraw();
   }
   private typeWindow(): void {
@@ -148,6 +153,7 @@ export class ImagePage {
     const width = this.windowInputs.width.valueAsNumber;
     if (!this.state) return;
     this.state.window = [level - width / 2, level + width / 2];
+    this.onWindow?.(this.state.window);
     this.redraw();
   }
 
@@ -162,8 +168,11 @@ export class ImagePage {
 
   private drag(name: string, place: Vec3, done: boolean): void {
     if (!this.state) return;
-    if (done) return this.changed(() => this.list.place(name, place));
-    this.state.landmarks = this.list.landmarks.map((l) => (l.name === name ? { ...l, position_lps_mm: place } : l));
+    const moved = (points: readonly Landmark[]): Landmark[] => points.map((l) => (l.name === name ? { ...l, position_lps_mm: place } : l));
+    const isPin = this.pins.pins.some((pin) => pin.name === name);
+    if (done) return (isPin ? this.pins.store : this.landmarks).change((list) => list.place(name, place));
+    if (isPin) this.state.pins = moved(this.pins.pins);
+    else this.state.landmarks = moved(this.list.landmarks);
     this.redraw();
   }
 
@@ -171,9 +180,9 @@ export class ImagePage {
     const name = this.nameInput.value.trim();
     if (!this.state || !/^[A-Za-z0-9_-]{1,60}$/.test(name)) return say("Give the landmark a name: letters, digits, _ and -.", "error");
     const focus = this.state.focus;
-    this.changed(() => this.list.place(name, focus));
+    this.landmarks.change((list) => list.place(name, focus));
     this.select(name);
-    const next = this.known.find((known) => !this.list.landmarks.some((l) => l.name === known));
+    const next = this.landmarks.known.find((known) => !this.list.landmarks.some((l) => l.name === known));
     if (next) this.nameInput.value = next;
   }
 
@@ -182,7 +191,7 @@ export class ImagePage {
     if (!from) return say("Choose a landmark in the list first.", "error");
     try {
       const to = this.nameInput.value.trim();
-      this.changed(() => this.list.rename(from, to));
+      this.landmarks.change((list) => list.rename(from, to));
       this.select(to);
     } catch (error) {
       say((error as Error).message, "error");
@@ -190,13 +199,12 @@ export class ImagePage {
   }
 
   private step(way: "undo" | "redo"): void {
-    this.changed(() => this.list[way]());
+    this.landmarks.change((list) => list[way]());
   }
 
-  private changed(change: () => void): void {
-    change();
-    this.showList();
-    void this.save();
+  private showPins(): void {
+    if (this.state) this.state.pins = this.pins.pins;
+    this.redraw();
   }
 
   private showList(): void {
@@ -207,40 +215,16 @@ export class ImagePage {
     const entry = (landmark: Landmark): HTMLElement => {
       const chosen = landmark.name === this.state?.selected;
       const name = button(landmark.name, () => this.select(landmark.name), { class: "name", "aria-pressed": String(chosen) });
-      const remove = button("×", () => this.changed(() => this.list.remove(landmark.name)), { class: "small", "aria-label": `Remove ${landmark.name}` });
+      const remove = button("×", () => this.landmarks.change((list) => list.remove(landmark.name)), { class: "small", "aria-label": `Remove ${landmark.name}` });
       return make("li", {}, name, remove);
     };
     this.entries.replaceChildren(...this.list.landmarks.map(entry));
     this.redraw();
   }
 
-  private async load(): Promise<void> {
-    const stored = await api.landmarks();
-    this.version = stored.version;
-    this.known = stored.known;
-    this.list.reset(stored.landmarks);
-    byId("known-landmarks").replaceChildren(...stored.known.map((name) => make("option", { value: name })));
-    this.nameInput.value = stored.known.find((name) => !stored.landmarks.some((l) => l.name === name)) ?? "landmark";
-    this.showList();
-  }
-
-  /** One save at a time; a change during one is saved after it. */
-  private async save(): Promise<void> {
-    this.saveAgain = true;
-    if (this.saving) return;
-    this.saving = true;
-    try {
-      while (this.saveAgain) {
-        this.saveAgain = false;
-        this.version = (await api.saveLandmarks(this.version, [...this.list.landmarks])).version;
-      }
-      say("Landmarks saved.");
-    } catch (error) {
-      say((error as Error).message, "error");
-      if (error instanceof ServerError && error.status === 409) await this.load();
-    } finally {
-      this.saving = false;
-    }
+  private suggestName(): void {
+    const { known } = this.landmarks;
+    byId("known-landmarks").replaceChildren(...known.map((name) => make("option", { value: name })));
+    this.nameInput.value = known.find((name) => !this.list.landmarks.some((l) => l.name === name)) ?? "landmark";
   }
 }
-

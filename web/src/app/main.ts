@@ -1,12 +1,14 @@
 import "./style.css";
 import { api } from "../core/api";
+import { ComparePage } from "../compare/compare_page";
 import { decodeBundle } from "../core/bundle";
-import type { Case, Vec3 } from "../core/case";
+import type { Case } from "../core/case";
 import { byId, make, say } from "../core/dom";
 import { Socket } from "../core/socket";
 import { FrameStore } from "../scene/frame_store";
 import { HipModel } from "../scene/hip_model";
 import { Viewer } from "../scene/viewer";
+import { volumeFrom, type Volume } from "../slices/volume";
 import { ExamPage } from "./exam_page";
 import { FieldChoice } from "./field_choice";
 import { ImagePage } from "./image_page";
@@ -14,9 +16,10 @@ import type { Job } from "./job_panel";
 import { Probe } from "./probe";
 import { ResultPage } from "./result_page";
 import { SceneControls, viewpointButtons } from "./scene_controls";
+import { SliceControls } from "./slice_controls";
 import { startTheme } from "./theme";
 
-type PageName = "result" | "exam" | "image";
+type PageName = "result" | "compare" | "exam" | "image";
 
 /** The application over one folder. */
 class App {
@@ -29,6 +32,10 @@ class App {
   private readonly result: ResultPage;
   private readonly exam: ExamPage;
   private readonly image: ImagePage;
+  private readonly compare: ComparePage;
+  private sceneControls: SceneControls | null = null;
+  private sliceControls: SliceControls | null = null;
+  private volume: Promise<Volume> | null = null;
   private readonly socket: Socket;
   private readonly tabs = new Map<PageName, HTMLButtonElement>();
 
@@ -39,7 +46,9 @@ class App {
     this.probe = new Probe(this.viewer, this.hip, info);
     this.result = new ResultPage(info, this.viewer, this.hip, this.frames, this.colours, this.probe);
     this.exam = new ExamPage(this.viewer, this.hip, this.colours, this.probe, info.image_pose, send);
-    this.image = new ImagePage(info, this.viewer, this.hip, send);
+    this.image = new ImagePage(info, this.viewer, this.hip, () => this.readVolume(), send);
+    this.image.onWindow = (window) => this.sliceControls?.setWindow(window);
+    this.compare = new ComparePage(info, this.viewer, this.hip, this.frames, this.colours);
     this.image.jobs.onDone = () => location.reload();
     this.socket = new Socket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`, {
       state: (state) => this.connection(state === "open"),
@@ -53,26 +62,30 @@ class App {
     document.title = `coxa · ${this.info.name}`;
     byId("bar").append(this.colours.bar.element);
     this.buildTabs();
+    if (this.frames.count > 0) void this.frames.get(0).catch(() => undefined); // asked for at once; shown below
     await this.hip.load(this.info);
     this.result.surfacesLoaded();
-    byId("views").append(...viewpointButtons(this.viewer, this.info.clock));
+    byId("views").append(...viewpointButtons(() => [this.viewer, ...(this.compare.second ? [this.compare.second.viewer] : [])], this.info.clock));
     this.viewer.look([-0.35, -1, 0.25]);
     if (this.frames.count > 0) this.colours.choose("contact_pressure");
-    this.go(this.info.bodies.length === 0 && this.info.surfaces.length === 0 && this.info.image ? "image" : "result");
+    this.go(this.info.bodies.length === 0 && this.info.surfaces.length === 0 ? "image" : "result");
     await this.result.show(0);
     this.recolour();
     document.body.dataset["ready"] = "yes";
-    await this.frames.fetchAhead(() => this.page === "result" && this.recolour());
+    await this.frames.fetchAhead(() => undefined);
+    if (this.page === "result") this.recolour(); // over all frames now
     document.body.dataset["allFrames"] = "yes";
   }
 
   themeChanged(): void {
     this.result.themeChanged();
+    this.compare.themeChanged();
   }
 
   private buildTabs(): void {
     const names: [PageName, string, boolean][] = [
       ["result", "Result", true],
+      ...(this.info.other ? [["compare", "Compare", true] as [PageName, string, boolean]] : []),
       ["exam", "Examine", this.info.live],
       ["image", "Image and landmarks", true],
     ];
@@ -97,31 +110,55 @@ class App {
   private go(page: PageName): void {
     if (this.page === "exam" && page !== "exam") this.exam.leave();
     this.result.time?.stop();
+    this.compare.time?.stop();
     this.page = page;
     document.body.dataset["page"] = page;
     for (const [name, tab] of this.tabs) {
       tab.setAttribute("aria-selected", String(name === page));
       tab.tabIndex = name === page ? 0 : -1;
     }
-    const pages = { result: this.result, exam: this.exam, image: this.image };
+    const pages = { result: this.result, compare: this.compare, exam: this.exam, image: this.image };
     const own = pages[page];
-    const shared = page === "image" ? [] : [this.colours.element, this.controls()];
+    const shared = page === "image" ? [] : [this.colours.element, this.controls().element, ...(page === "compare" ? [] : [this.slices().element])];
     byId("panel").replaceChildren(...(page === "exam" ? [own.panel, ...shared] : [...shared, own.panel]));
     byId("side").replaceChildren(own.side);
     byId("slices").hidden = page !== "image";
-    byId("time").hidden = page !== "result" || this.frames.count === 0;
+    byId("compare3d").hidden = page !== "compare";
+    byId("time").hidden = (page !== "result" && page !== "compare") || this.frames.count === 0;
     this.viewer.showMarker(null);
     this.probe.clear();
-    if (page === "result") void this.result.show(this.result.currentFrame);
+    if (page === "result") {
+      this.result.time?.mount();
+      void this.result.show(this.result.currentFrame);
+    }
+    if (page === "compare") void this.compare.open((viewer) => this.addView(viewer)).catch((error: Error) => say(error.message, "error"));
     if (page === "exam") this.exam.enter();
     if (page === "image") void this.image.open();
   }
 
-  private sceneControls: SceneControls | null = null;
-  private controls(): HTMLElement {
-    const centre: Vec3 = this.info.clock?.centre ?? [0, 0, 0];
-    this.sceneControls ??= new SceneControls(this.viewer, centre);
-    return this.sceneControls.element;
+  /** The image, read when first looked at. */
+  private readVolume(): Promise<Volume> {
+    this.volume ??= api.image().then(volumeFrom);
+    this.volume.catch(() => (this.volume = null));
+    return this.volume;
+  }
+
+  private controls(): SceneControls {
+    if (!this.sceneControls) {
+      this.sceneControls = new SceneControls({ viewer: this.viewer, centre: this.info.clock?.centre ?? [0, 0, 0] });
+      this.sceneControls.onClip = (orientation, offset) => this.sliceControls?.follow(orientation, offset);
+    }
+    return this.sceneControls;
+  }
+
+  private slices(): SliceControls {
+    this.sliceControls ??= new SliceControls(this.viewer, this.info.clock?.centre ?? null, () => this.readVolume());
+    return this.sliceControls;
+  }
+
+  /** The second result's view looks like the first. */
+  private addView(viewer: Viewer): void {
+    this.controls().add({ viewer, centre: this.compare.second?.info.clock?.centre ?? [0, 0, 0] });
   }
 
   private recolour(): void {
@@ -146,7 +183,13 @@ class App {
         this.image.jobs.show(message as unknown as Job);
         break;
       case "landmarks":
-        void this.image.changedElsewhere(String(message["version"]));
+        if (this.image.state) void this.image.landmarks.changedElsewhere(String(message["version"]));
+        break;
+      case "pins":
+        if (this.image.state) void this.image.pins.store.changedElsewhere(String(message["version"]));
+        break;
+      case "image":
+        location.reload(); // another window has sent one
         break;
       case "live_error":
         this.exam.fail(Number(message["number"]), String(message["text"]));

@@ -1,9 +1,10 @@
 import { ClockMap } from "../charts/clock_map";
-import { Curves } from "../charts/curves";
+import { bandChoices, intervalBand, normalBand, type Band, type BandKind } from "../charts/bands";
+import { Curves, type Curve } from "../charts/curves";
 import { floats, triangles } from "../core/bundle";
 import { column, textColumn, type Case, type Table } from "../core/case";
-import { toCsv } from "../core/csv";
-import { button, byId, download, make, say } from "../core/dom";
+import { byId, labelled, make, select } from "../core/dom";
+import { ExportPanel } from "../export/export_panel";
 import type { FrameStore } from "../scene/frame_store";
 import type { HipModel } from "../scene/hip_model";
 import type { Viewer } from "../scene/viewer";
@@ -18,8 +19,10 @@ export class ResultPage {
   readonly time: TimeBar | null;
   lastFrameMs = 0;
   private frame = 0;
+  private bands: BandKind = "none";
   private readonly curves: Curves;
   private readonly clock: ClockMap;
+  private readonly bandSource = make("p", { class: "note", "data-testid": "band-source" });
 
   constructor(
     private readonly info: Case,
@@ -34,7 +37,7 @@ export class ResultPage {
     const summary = info.summary;
     this.time = summary ? new TimeBar(frames.count, (frame) => void this.show(frame), (frame) => this.frameText(summary, frame)) : null;
     this.panel.append(...this.exports(), ...this.notes());
-    if (summary) this.side.append(this.clock.element, this.curves.element);
+    if (summary) this.side.append(this.clock.element, this.bandChoice(summary), this.bandSource, this.curves.element);
     else this.side.append(make("p", {}, "No simulation yet: curves and maps appear here when the chain has run."));
     if (summary) this.startCurves(summary);
   }
@@ -88,13 +91,45 @@ export class ResultPage {
     this.clock.setSurface(this.info.clock, floats(body, "positions"), triangles(body), tags);
   }
 
+  /** What is drawn behind the joint angles. */
+  private bandChoice(summary: Table): HTMLElement {
+    const choices = bandChoices(this.info.movement, this.info.normal_curves, this.info.motion);
+    this.bands = choices[0]?.[0] ?? "none";
+    const choice = select(choices, (value) => {
+      this.bands = value;
+      this.startCurves(summary);
+    });
+    choice.dataset["testid"] = "bands";
+    return labelled("Bands behind the angles", choice);
+  }
+
+  private bandOf(angle: string, time: number[]): Band | null {
+    if (this.bands === "intervals") return intervalBand(this.info.motion, angle);
+    const normal = this.info.normal_curves.find((curve) => curve.movement === this.bands && curve.angle === angle);
+    return normal ? normalBand(normal, time) : null;
+  }
+
+  private describeBands(): void {
+    const normal = this.info.normal_curves.find((curve) => curve.movement === this.bands);
+    const own = this.bands === "intervals" ? "Shaded: 95 % intervals of this recording, by its markers." : "";
+    this.bandSource.textContent = normal ? `Shaded: mean ± SD over the whole movement, taken for one cycle. ${normal.source}.` : own;
+  }
+
   private startCurves(summary: Table): void {
-    const pick = (names: [column: string, label: string][]): { label: string; values: number[] }[] =>
-      names.map(([name, label]) => ({ label, values: column(summary, name) }));
+    const time = column(summary, "time_s");
+    const pick = (names: [column: string, label: string][]): Curve[] =>
+      names.map(([name, label]) => {
+        const band = this.bandOf(name, time);
+        return { label, values: column(summary, name), ...(band ? { band } : {}) };
+      });
+    this.describeBands();
     this.curves.show(
-      column(summary, "time_s"),
+      time,
       [
-        { title: "Joint angles [°]", curves: pick([["flexion_deg", "flexion"], ["adduction_deg", "adduction"], ["internal_rotation_deg", "internal rotation"]]) },
+        ...([["flexion_deg", "flexion"], ["adduction_deg", "adduction"], ["internal_rotation_deg", "internal rotation"]] as const).map(([name, label]) => ({
+          title: `${label.charAt(0).toUpperCase()}${label.slice(1)} [°]`,
+          curves: pick([[name, label]]),
+        })),
         { title: "Contact pressure [MPa]", curves: pick([["peak_pressure_p99_MPa", "peak (99th percentile)"], ["mean_pressure_MPa", "mean"]]) },
         { title: "Contact area [mm²]", curves: pick([["contact_area_mm2", "contact area"]]) },
       ],
@@ -103,19 +138,18 @@ export class ResultPage {
   }
 
   private exports(): HTMLElement[] {
-    const sizes: [string, number, number][] = [["1280 × 800", 1280, 800], ["1920 × 1200", 1920, 1200], ["3840 × 2400", 3840, 2400]];
-    const picture = sizes.map(([text, width, height]) =>
-      button(`PNG ${text}`, () => {
-        const background = getComputedStyle(document.documentElement).getPropertyValue("--scene").trim();
-        this.viewer
-          .picture(width, height, background)
-          .then((blob) => download(`${this.info.name}_frame${this.frame + 1}.png`, blob))
-          .catch((error: Error) => say(error.message, "error"));
-      }),
-    );
     const table = this.info.summary;
-    if (table) picture.push(button("CSV of the curves", () => download(`${this.info.name}_summary.csv`, toCsv(table))));
-    const parts: HTMLElement[] = [make("h2", {}, "Take away"), make("div", { class: "buttons" }, ...picture)];
+    const panel = new ExportPanel({
+      name: this.info.name,
+      viewers: () => [this.viewer],
+      scale: () => this.colours.scale,
+      caption: () => (table ? `${this.info.name} · ${this.frameText(table, this.frame)}` : this.info.name),
+      frames: this.frames.count,
+      current: () => this.frame,
+      show: (frame) => this.show(frame),
+      tables: table ? [{ label: "CSV of the curves", file: `${this.info.name}_summary.csv`, table }] : [],
+    });
+    const parts: HTMLElement[] = [panel.element];
     if (this.info.report) parts.push(make("p", {}, make("a", { href: this.info.report, target: "_blank", rel: "noopener" }, "Report")));
     return parts;
   }

@@ -17,6 +17,10 @@ export class TimeBar {
     this.slider = range(0, count - 1, 1, 0, (frame) => this.onFrame(frame));
     this.slider.setAttribute("aria-label", "Frame");
     this.play = button("Play", () => this.toggle(), { "aria-pressed": "false" });
+    this.mount();
+  }
+
+  mount(): void {
     byId("time").replaceChildren(this.play, this.slider, this.text);
   }
 

@@ -9,6 +9,7 @@ export class ColourBar {
   private readonly canvas = make("canvas", { width: 1, height: 256, "aria-hidden": "true" });
   private readonly ticks = make("div", { class: "ticks" });
   private readonly caption = make("figcaption");
+  private shown = "";
 
   constructor() {
     const grey = make("div", { class: "no-value" }, make("span", { class: "swatch" }), "no value");
@@ -18,7 +19,9 @@ export class ColourBar {
 
   show(scale: Scale | null): void {
     this.element.hidden = scale === null;
-    if (!scale) return;
+    const key = JSON.stringify(scale);
+    if (!scale || key === this.shown) return; // led live, it is asked for at every answer
+    this.shown = key;
     const context = this.canvas.getContext("2d");
     for (let y = 0; context && y < 256; ++y) {
       context.fillStyle = css(mapColour(scale.map, 1 - y / 255));
@@ -33,4 +36,20 @@ export class ColourBar {
       }),
     );
   }
+}
+
+/** The same into a picture, its upper left corner at (left, top), in letters of `size`; `ink` is their colour. */
+export function drawBar(context: CanvasRenderingContext2D, scale: Scale, left: number, top: number, size: number, ink: string): void {
+  const height = 14 * size;
+  context.font = `${size}px system-ui, "DejaVu Sans", sans-serif`;
+  context.textBaseline = "middle";
+  const from = top + 2.5 * size;
+  for (let y = 0; y < height; ++y) {
+    context.fillStyle = css(mapColour(scale.map, 1 - y / (height - 1)));
+    context.fillRect(left + 0.5 * size, from + y, 1.2 * size, 1.5);
+  }
+  context.fillStyle = ink;
+  context.textAlign = "left";
+  context.fillText(scale.label, left + 0.5 * size, top + size);
+  for (const value of niceTicks(scale.low, scale.high)) context.fillText(`– ${shortNumber(value)}`, left + 2 * size, from + (1 - share(scale, value)) * height);
 }

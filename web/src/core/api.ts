@@ -45,18 +45,41 @@ async function json<T>(path: string): Promise<T> {
 async function bundle(path: string): Promise<Bundle> {
   return decodeBundle(await (await checked(await fetch(path))).arrayBuffer());
 }
+async function putBytes<T>(path: string, body: Blob): Promise<T> {
+  return (await (await checked(await fetch(path, { method: "PUT", body }))).json()) as T;
+}
 async function put<T>(path: string, body: unknown): Promise<T> {
   return (await (await checked(await fetch(path, { method: "PUT", body: JSON.stringify(body) }))).json()) as T;
 }
 
+/** What a result is read from: the folder's own, or that of the second one it is compared with. */
+export interface ResultSource {
+  case(): Promise<Case>;
+  surface(name: string): Promise<Bundle>;
+  body(name: string): Promise<Bundle>;
+  frame(index: number): Promise<Bundle>;
+}
+
+function source(of: string): ResultSource {
+  return {
+    case: () => json<Case>(`/api/case?${of}`),
+    surface: (name) => bundle(`/api/surface?${of}name=${encodeURIComponent(name)}`),
+    body: (name) => bundle(`/api/body?${of}name=${encodeURIComponent(name)}`),
+    frame: (index) => bundle(`/api/frame?${of}index=${index}`),
+  };
+}
+export const other = source("of=other&");
+
 export const api = {
-  case: () => json<Case>("/api/case"),
-  surface: (name: string) => bundle(`/api/surface?name=${encodeURIComponent(name)}`),
-  body: (name: string) => bundle(`/api/body?name=${encodeURIComponent(name)}`),
-  frame: (index: number) => bundle(`/api/frame?index=${index}`),
+  ...source(""),
   image: () => bundle("/api/image"),
   landmarks: () => json<StoredLandmarks>("/api/landmarks"),
   saveLandmarks: (version: string, landmarks: Landmark[]) =>
     put<StoredLandmarks>("/api/landmarks", { version, landmarks }),
+  pins: () => json<StoredLandmarks>("/api/pins"),
+  savePins: (version: string, landmarks: Landmark[]) => put<StoredLandmarks>("/api/pins", { version, landmarks }),
+  upload: (batch: string, name: string, bytes: Blob) =>
+    putBytes<{ files: number; bytes: number }>(`/api/upload?batch=${batch}&name=${encodeURIComponent(name)}`, bytes),
+  takeImage: (wanted: { batch: string; side: string; movement: string; series?: string }) => put<{ image: string }>("/api/image", wanted),
   saveMovement: (movement: Movement) => put<{ file: string }>("/api/movement", movement),
 };

@@ -5,6 +5,7 @@ export type Values = Float32Array | Uint32Array | Uint16Array | Uint8Array;
 export interface Bundle {
   meta: Record<string, unknown>;
   arrays: Map<string, Values>;
+  bytes: number; // that it came in
 }
 
 interface Entry {
@@ -13,6 +14,20 @@ interface Entry {
   rows: number;
   columns: number;
   offset: number;
+  low?: number; // of numbers in steps
+  step?: number;
+}
+
+const kNoNumber = 65535;
+
+/** Numbers that came in 16 bits. */
+function fromSteps(steps: Uint16Array, low: number, step: number): Float32Array {
+  const values = new Float32Array(steps.length);
+  for (let i = 0; i < steps.length; ++i) {
+    const q = steps[i] as number;
+    values[i] = q === kNoNumber ? NaN : low + step * q;
+  }
+  return values;
 }
 
 function view(buffer: ArrayBuffer, start: number, entry: Entry): Values {
@@ -24,6 +39,8 @@ function view(buffer: ArrayBuffer, start: number, entry: Entry): Values {
       return new Uint32Array(buffer, start, length);
     case "uint16":
       return new Uint16Array(buffer, start, length);
+    case "steps16":
+      return fromSteps(new Uint16Array(buffer, start, length), entry.low ?? 0, entry.step ?? 1);
     case "uint8":
       return new Uint8Array(buffer, start, length);
     default:
@@ -41,7 +58,7 @@ export function decodeBundle(buffer: ArrayBuffer): Bundle {
   };
   const arrays = new Map<string, Values>();
   for (const entry of header.arrays) arrays.set(entry.name, view(buffer, 8 + length + entry.offset, entry));
-  return { meta: header.meta, arrays };
+  return { meta: header.meta, arrays, bytes: buffer.byteLength };
 }
 
 export function floats(bundle: Bundle, name: string): Float32Array {

@@ -28,6 +28,16 @@ export interface Stage {
   figures: Record<string, unknown>;
 }
 
+/** A band of normal values about a joint angle, by percent of the movement. */
+export interface NormalCurve {
+  movement: string;
+  angle: string;
+  source: string;
+  percent: number[];
+  low: number[];
+  high: number[];
+}
+
 export interface Case {
   name: string;
   folder: string;
@@ -46,6 +56,10 @@ export interface Case {
   motion?: Table;
   stages?: Stage[];
   report?: string;
+  movement?: string; // the pattern's name; empty for recorded markers
+  movements: string[];
+  normal_curves: NormalCurve[];
+  other?: string; // a second result to compare with
 }
 
 /** A column of a table as numbers; NaN where a cell holds none. */

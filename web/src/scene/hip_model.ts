@@ -1,6 +1,6 @@
 import { structureColours } from "../colour/maps";
-import { rangeOf, type Scale } from "../colour/scale";
-import { api } from "../core/api";
+import type { Scale } from "../colour/scale";
+import { api, type ResultSource } from "../core/api";
 import { floats, triangles, type Bundle } from "../core/bundle";
 import type { Case } from "../core/case";
 import { SurfaceLayer } from "./surface_layer";
@@ -17,14 +17,17 @@ export class HipModel {
   readonly surfaces = new Map<string, Bundle>();
   private state: Bundle | null = null; // what moved the hip last
 
-  constructor(private readonly viewer: Viewer) {}
+  constructor(
+    readonly viewer: Viewer,
+    private readonly source: ResultSource = api,
+  ) {}
 
   async load(info: Case): Promise<void> {
     const meshed = info.bodies as BodyName[];
     const wanted = info.surfaces.filter((name) => !meshed.some((body) => layerOf(body) === name));
     await Promise.all([
-      ...meshed.map(async (body) => this.bodies.set(body, await api.body(body))),
-      ...wanted.map(async (name) => this.surfaces.set(name, await api.surface(name))),
+      ...meshed.map(async (body) => this.bodies.set(body, await this.source.body(body))),
+      ...wanted.map(async (name) => this.surfaces.set(name, await this.source.surface(name))),
     ]);
     for (const name of [...wanted].sort()) this.addLayer(name, this.surfaces.get(name));
     for (const body of meshed) this.addLayer(layerOf(body), this.bodies.get(body));
@@ -62,8 +65,8 @@ export class HipModel {
     return found instanceof Float32Array ? found : null;
   }
 
-  /** Range of a field over frames, or over what stands still. */
-  range(field: string, frames: Bundle[]): [number, number] {
+  /** All values of a field over frames, or as the hip stands. */
+  arrays(field: string, frames: Bundle[]): Float32Array[] {
     const arrays: Float32Array[] = [];
     for (const layer of this.viewer.layers.keys()) {
       for (const frame of frames.length > 0 ? frames : [this.state]) {
@@ -71,7 +74,7 @@ export class HipModel {
         if (values) arrays.push(values);
       }
     }
-    return rangeOf(arrays);
+    return arrays;
   }
 
   colour(field: string | null, scale: Scale | null): void {

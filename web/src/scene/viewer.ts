@@ -20,11 +20,19 @@ export const viewpoints: Record<string, Vec3> = {
   below: [0, 0.001, -1],
 };
 
+const kSoftwareKey = "coxa-draws-in-software";
 const kTurn = Math.PI / 36;
 const kMargin = 1.08;
 
-/** True where the browser draws without a graphics card: then smooth edges cost more than they are worth. */
+/** True where the browser draws without a graphics card: then smooth edges cost more than they are worth. Asked once a browser. */
 function drawsInSoftware(): boolean {
+  const known = localStorage.getItem(kSoftwareKey);
+  if (known) return known === "yes";
+  const software = asksTheDriver();
+  localStorage.setItem(kSoftwareKey, software ? "yes" : "no");
+  return software;
+}
+function asksTheDriver(): boolean {
   const gl = document.createElement("canvas").getContext("webgl2");
   const info = gl?.getExtension("WEBGL_debug_renderer_info");
   const name = gl && info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
@@ -41,6 +49,8 @@ export class Viewer {
   readonly layers = new Map<string, SurfaceLayer>();
   readonly software: boolean;
   onDrawn: ((milliseconds: number) => void) | null = null;
+  /** The eye has moved. */
+  onCamera: (() => void) | null = null;
   private readonly marker = new THREE.Mesh(new THREE.SphereGeometry(1, 16, 12), new THREE.MeshBasicMaterial({ color: 0xd00000, depthTest: false }));
   private readonly plane = new THREE.Plane(new THREE.Vector3(0, 0, -1), 0);
   private clipping = false;
@@ -62,7 +72,7 @@ export class Viewer {
     this.marker.visible = false;
     this.marker.renderOrder = 2;
     this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.addEventListener("change", () => this.invalidate());
+    this.controls.addEventListener("change", () => this.cameraMoved());
     canvas.addEventListener("keydown", (event) => this.onKey(event));
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement ?? canvas);
     this.resize();
@@ -105,7 +115,25 @@ export class Viewer {
     const aspect = parent.width / Math.max(1, parent.height);
     this.halfHeight = kMargin * 0.5 * Math.max(seen.y, aspect < 1 ? seen.x : seen.x / aspect);
     this.resize();
+    this.cameraMoved();
+  }
+
+  /** Looks as another view does, at a place that lies `shift` from what that one looks at. */
+  lookLike(leader: Viewer, shift: Vec3): void {
+    const by = new THREE.Vector3(...shift);
+    this.camera.up.copy(leader.camera.up);
+    this.camera.zoom = leader.camera.zoom;
+    this.camera.position.copy(leader.camera.position).add(by);
+    this.controls.target.copy(leader.controls.target).add(by);
+    this.halfHeight = leader.halfHeight;
+    this.controls.update();
+    this.resize();
     this.invalidate();
+  }
+
+  private cameraMoved(): void {
+    this.invalidate();
+    this.onCamera?.();
   }
 
   setClip(on: boolean, normal: Vec3 = [0, 0, -1], offset = 0): void {
@@ -153,20 +181,18 @@ export class Viewer {
     requestAnimationFrame(() => this.draw());
   }
 
-  /** The picture at any size, independent of the window. */
-  async picture(width: number, height: number, background: string): Promise<Blob> {
+  /** The picture at any size, independent of the window, into another. */
+  drawInto(context: CanvasRenderingContext2D, x: number, y: number, width: number, height: number, background: string): void {
     const ratio = this.renderer.getPixelRatio();
     this.renderer.setPixelRatio(1);
     this.setFrustum(width, height);
     this.renderer.setSize(width, height, false);
     this.scene.background = new THREE.Color(background);
     this.renderer.render(this.scene, this.camera);
-    const blob = await new Promise<Blob | null>((done) => this.canvas.toBlob(done, "image/png"));
+    context.drawImage(this.canvas, x, y); // at once: the canvas does not keep it
     this.scene.background = null;
     this.renderer.setPixelRatio(ratio);
     this.resize();
-    if (!blob) throw new Error("the browser could not make the picture");
-    return blob;
   }
 
   private draw(): void {
@@ -241,6 +267,6 @@ export class Viewer {
     event.preventDefault();
     this.camera.updateProjectionMatrix();
     this.controls.update();
-    this.invalidate();
+    this.cameraMoved();
   }
 }

@@ -11,6 +11,7 @@ export interface SliceState {
   focus: Vec3; // LPS
   window: [number, number];
   landmarks: readonly Landmark[];
+  pins: readonly Landmark[]; // that surfaces must pass through
   selected: string | null;
   /** Surfaces in index coordinates. */
   outlines: { name: string; points: Float32Array; triangles: Uint32Array }[];
@@ -34,7 +35,6 @@ const letters: Record<Orientation, [left: string, right: string, top: string, bo
 /** One linked slice: scroll, click to move the cross-hair, drag landmarks, right drag for window and level. */
 export class SliceView {
   readonly element: HTMLElement;
-  lastMs = 0;
   private readonly canvas: HTMLCanvasElement;
   private readonly picture = make("canvas");
   private readonly axes: SliceAxes;
@@ -139,8 +139,9 @@ export class SliceView {
     this.drawOutlines(context, k);
     this.drawCross(context);
     this.drawLandmarks(context);
+    this.drawPins(context);
     this.drawLetters(context, k);
-    this.lastMs = performance.now() - start;
+    this.element.dataset["readyMs"] = (performance.now() - start).toFixed(1);
   }
 
   private drawOutlines(context: CanvasRenderingContext2D, k: number): void {
@@ -187,11 +188,24 @@ export class SliceView {
     }
   }
 
+  private drawPins(context: CanvasRenderingContext2D): void {
+    context.lineWidth = 2;
+    context.strokeStyle = context.fillStyle = "#ff9ad5";
+    for (const { name, position_lps_mm } of this.state.pins) {
+      if (this.depth(position_lps_mm) > kMarkDepth) continue;
+      const [x, y] = this.toScreen(indexOf(this.state.volume, position_lps_mm));
+      context.strokeRect(x - kMarkRadius + 1, y - kMarkRadius + 1, 2 * kMarkRadius - 2, 2 * kMarkRadius - 2);
+      context.fillText(name, x + kMarkRadius + 4, y);
+    }
+  }
+
   private drawLetters(context: CanvasRenderingContext2D, k: number): void {
     const width = this.element.clientWidth;
     const height = this.element.clientHeight;
     const [left, right, top, bottom] = letters[this.orientation];
     context.fillStyle = "#ffffff";
+    context.shadowColor = "#000000"; // readable on bright fat too
+    context.shadowBlur = 4;
     context.font = "bold 13px system-ui, sans-serif";
     context.textBaseline = "middle";
     context.textAlign = "center";
@@ -210,7 +224,7 @@ export class SliceView {
   }
 
   private landmarkAt(x: number, y: number): string | null {
-    for (const { name, position_lps_mm } of this.state.landmarks) {
+    for (const { name, position_lps_mm } of [...this.state.pins, ...this.state.landmarks]) {
       if (this.depth(position_lps_mm) > kMarkDepth) continue;
       const [px, py] = this.toScreen(indexOf(this.state.volume, position_lps_mm));
       if (Math.hypot(px - x, py - y) <= kMarkRadius + 3) return name;
