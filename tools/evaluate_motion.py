@@ -5,8 +5,9 @@ usage: evaluate_motion.py [--coxa build/release/coxa] [--shared ../shared] [--on
                           [--draws 50] [--seeds 30] [--first-seed 6001] [--methods paper,rigid,...]
 
 star        motion/foroit/star_arc, calibrated on its first frame from the bone pins, every method
-perturbed   the same with 2 mm errors in marker registration and pelvis centre, 1 mm in the femur's
-functional  the same with the joint centre found by SCoRE from the thigh markers' rigid poses
+perturbed   the same with 2 mm errors in marker registration and pelvis centre, 1 mm in the femur's; then simulated
+            examinations, one draw each
+functional  the same with the joint centre found by SCoRE from the thigh markers' rigid poses; then simulated examinations
 simulated   eval/sta_simulate.py, three movements and one with a common rotation of 6 degrees
 """
 import argparse, csv, json, os, subprocess, sys, tempfile
@@ -53,22 +54,35 @@ def figures(result, angles, head):
             "head": np.sqrt(((result[2] - head) ** 2).sum(1).mean())}
 
 
+def read_trc(path):
+    lines = open(path).read().split("\n")
+    names = [n for n in lines[3].split("\t")[2:] if n.strip()]
+    frames = np.array([[float(v) for v in l.split("\t")[2:2 + 3 * len(names)]] for l in lines[6:] if l.strip()])
+    return names, frames.reshape(len(frames), -1, 3)
+
+
 def star_model(shared):
     """The hip model that an MRI with markers would give: everything from the first frame of the truth."""
     folder = f"{shared}/data/motion/foroit"
     angles, centre, t = truth_of(f"{folder}/star_arc_truth.csv")
-    lines = open(f"{folder}/star_arc.trc").read().split("\n")
-    names = [n for n in lines[3].split("\t")[2:] if n.strip()]
-    first = np.array([float(v) for v in lines[6].split("\t")[2:2 + 3 * len(names)]]).reshape(-1, 3)
+    names, markers = read_trc(f"{folder}/star_arc.trc")
     pose = {b: (np.array([[t[f"{b}R{i}{j}"][0] for j in range(3)] for i in range(3)]),
                 np.array([t[f"{b}_t{k}"][0] for k in "xyz"])) for b in ("pelvis", "femur")}
     local = lambda bone, p: (pose[bone][0].T @ (p - pose[bone][1])).tolist()
     model = {"side": "right", "calibration_frame": 1, "source": "bone pins, first frame",
              "joint_centre_pelvis_mm": local("pelvis", centre[0]), "joint_centre_femur_mm": local("femur", centre[0]),
-             "pelvis_landmarks_mm": {n: local("pelvis", p) for n, p in zip(names, first) if "SI" in n},
-             "thigh_markers_femur_mm": {n: local("femur", p) for n, p in zip(names, first) if "SI" not in n}}
-    markers = np.array([[float(v) for v in l.split("\t")[2:2 + 3 * len(names)]] for l in lines[6:] if l.strip()])
-    return f"{folder}/star_arc.trc", model, angles, centre, names, markers.reshape(len(markers), -1, 3)
+             "pelvis_landmarks_mm": {n: local("pelvis", p) for n, p in zip(names, markers[0]) if "SI" in n},
+             "thigh_markers_femur_mm": {n: local("femur", p) for n, p in zip(names, markers[0]) if "SI" not in n}}
+    return f"{folder}/star_arc.trc", model, angles, centre
+
+
+def simulate(a, folder, seed, motion, extra=()):
+    """One trial of sta_simulate.py: markers, model, angles, head."""
+    subprocess.run(["/usr/bin/python3", f"{a.shared}/eval/sta_simulate.py", f"{folder}/s", "--seed", str(seed),
+                    "--motion", motion, *extra], check=True, stdout=subprocess.DEVNULL)
+    model = {**json.load(open(f"{folder}/s_model.json")), "calibration_frame": 1}
+    angles, head, _ = truth_of(f"{folder}/s_truth.csv")
+    return f"{folder}/s.trc", model, angles, head
 
 
 def print_row(label, f):
@@ -82,25 +96,35 @@ def mean_of(all_figures):
 
 
 def run_star(a, folder):
-    markers, model, angles, centre, *_ = star_model(a.shared)
+    markers, model, angles, centre = star_model(a.shared)
     for method in a.methods:
         print_row(f"star_arc {method}", figures(track(a.coxa, markers, model, method, folder), angles, centre))
 
 
+def perturbed(model, rng):
+    m = json.loads(json.dumps(model))
+    m.update(marker_sd_mm=2, pelvis_centre_sd_mm=2, femur_centre_sd_mm=1)
+    for label, p in m["thigh_markers_femur_mm"].items():
+        m["thigh_markers_femur_mm"][label] = list(np.array(p) + rng.normal(0, 2, 3))
+    m["joint_centre_pelvis_mm"] = list(np.array(model["joint_centre_pelvis_mm"]) + rng.normal(0, 2, 3))
+    m["joint_centre_femur_mm"] = list(np.array(model["joint_centre_femur_mm"]) + rng.normal(0, 1, 3))
+    return m
+
+
 def run_perturbed(a, folder):
-    markers, model, angles, centre, *_ = star_model(a.shared)
+    markers, model, angles, centre = star_model(a.shared)
     for method in a.methods:
         rng = np.random.default_rng(7)
-        rows = []
-        for _ in range(a.draws):
-            m = json.loads(json.dumps(model))
-            m.update(marker_sd_mm=2, pelvis_centre_sd_mm=2, femur_centre_sd_mm=1)
-            for label, p in m["thigh_markers_femur_mm"].items():
-                m["thigh_markers_femur_mm"][label] = list(np.array(p) + rng.normal(0, 2, 3))
-            m["joint_centre_pelvis_mm"] = list(np.array(model["joint_centre_pelvis_mm"]) + rng.normal(0, 2, 3))
-            m["joint_centre_femur_mm"] = list(np.array(model["joint_centre_femur_mm"]) + rng.normal(0, 1, 3))
-            rows.append(figures(track(a.coxa, markers, m, method, folder), angles, centre))
-        print_row(f"perturbed {method}", mean_of(rows))
+        print_row(f"perturbed {method}", mean_of([figures(track(a.coxa, markers, perturbed(model, rng), method, folder),
+                                                          angles, centre) for _ in range(a.draws)]))
+    rows = {m: [] for m in a.methods}
+    for seed in range(a.first_seed, a.first_seed + a.seeds):
+        markers, model, angles, head = simulate(a, folder, seed, "exam")
+        model = perturbed(model, np.random.default_rng(seed))
+        for method in a.methods:
+            rows[method].append(figures(track(a.coxa, markers, model, method, folder), angles, head))
+    for method in a.methods:
+        print_row(f"perturbed exam {method}", mean_of(rows[method]))
 
 
 def rigid_poses(x, y):
@@ -112,29 +136,45 @@ def rigid_poses(x, y):
     return R, y.mean(1) - np.einsum("nij,j->ni", R, x.mean(0))
 
 
-def run_functional(a, folder):
-    markers, model, angles, centre, names, data = star_model(a.shared)
+def with_score_centre(model, markers):
+    """The model with SCoRE's joint centre, and how far it is off in the pelvis and in the femur."""
+    names, data = read_trc(markers)
     is_pelvis = np.array(["SI" in n for n in names])
     RP, tP = rigid_poses(np.array([model["pelvis_landmarks_mm"][n] for n in names if "SI" in n]), data[:, is_pelvis])
     RF, tF = rigid_poses(np.array([model["thigh_markers_femur_mm"][n] for n in names if "SI" not in n]), data[:, ~is_pelvis])
     c = np.linalg.lstsq(np.concatenate([RP, -RF], 2).reshape(-1, 6), (tF - tP).ravel(), rcond=None)[0]
-    print(f"SCoRE centre is {np.linalg.norm(c[:3] - model['joint_centre_pelvis_mm']):.1f} mm from the true one in the pelvis,"
-          f" {np.linalg.norm(c[3:] - model['joint_centre_femur_mm']):.1f} mm in the femur")
-    model.update(joint_centre_pelvis_mm=list(c[:3]), joint_centre_femur_mm=list(c[3:]), pelvis_centre_sd_mm=6.6)
+    off = [np.linalg.norm(c[:3] - model["joint_centre_pelvis_mm"]), np.linalg.norm(c[3:] - model["joint_centre_femur_mm"])]
+    # 6.6 mm: of functional centres against dual fluoroscopy (docs/motion.md section 2), in both bones alike
+    return {**model, "joint_centre_pelvis_mm": list(c[:3]), "joint_centre_femur_mm": list(c[3:]),
+            "pelvis_centre_sd_mm": 6.6, "femur_centre_sd_mm": 6.6}, off
+
+
+def run_functional(a, folder):
+    markers, model, angles, centre = star_model(a.shared)
+    model, off = with_score_centre(model, markers)
+    print(f"SCoRE centre is {off[0]:.1f} mm from the true one in the pelvis, {off[1]:.1f} mm in the femur")
     for method in a.methods:
         print_row(f"functional {method}", figures(track(a.coxa, markers, model, method, folder), angles, centre))
+    rows, offs = {m: [] for m in a.methods}, []
+    for seed in range(a.first_seed, a.first_seed + a.seeds):
+        markers, model, angles, head = simulate(a, folder, seed, "exam")
+        model, off = with_score_centre(model, markers)
+        offs.append(off)
+        for method in a.methods:
+            rows[method].append(figures(track(a.coxa, markers, model, method, folder), angles, head))
+    print("simulated: SCoRE centre is off by {:.1f} mm in the pelvis, {:.1f} mm in the femur (RMS)".format(
+        *np.sqrt(np.mean(np.square(offs), 0))))
+    for method in a.methods:
+        print_row(f"functional exam {method}", mean_of(rows[method]))
 
 
 def run_simulated(a, folder):
     for motion, extra in (("exam", []), ("gait", []), ("squat", []), ("exam", ["--bias", "6"])):
         rows = {m: [] for m in a.methods}
         for seed in range(a.first_seed, a.first_seed + a.seeds):
-            subprocess.run(["/usr/bin/python3", f"{a.shared}/eval/sta_simulate.py", f"{folder}/s", "--seed", str(seed),
-                            "--motion", motion, *extra], check=True, stdout=subprocess.DEVNULL)
-            model = {**json.load(open(f"{folder}/s_model.json")), "calibration_frame": 1}
-            angles, head, _ = truth_of(f"{folder}/s_truth.csv")
+            markers, model, angles, head = simulate(a, folder, seed, motion, extra)
             for method in a.methods:
-                rows[method].append(figures(track(a.coxa, f"{folder}/s.trc", model, method, folder), angles, head))
+                rows[method].append(figures(track(a.coxa, markers, model, method, folder), angles, head))
         for method in a.methods:
             print_row(f"{motion}{'+bias' if extra else ''} {method}", mean_of(rows[method]))
 

@@ -41,5 +41,8 @@ void print_centres(const std::filesystem::path& shared);
 void learn_heads(const std::filesystem::path& shared, const std::filesystem::path& out);
 /// Frames of cropped bones against whole ones: section 8.4.
 void print_frames(const std::filesystem::path& shared, const std::filesystem::path& atlas_file);
+/// Bones of a real hip in the true and in the tracked poses of trials (PREFIX.trc,
+/// PREFIX_model.json, PREFIX_truth.csv, as sta_simulate.py writes them): section 8.7.
+void print_collisions(const std::filesystem::path& shared, const std::vector<std::string>& trials);
 
 }  // namespace coxa::verify

@@ -16,10 +16,14 @@ int main(int argc, char** argv) {
   heads->add_option("--out", out, "file to write");
   auto* frames = app.add_subcommand("frames", "frames of cropped bones against whole ones");
   frames->add_option("--atlas", atlas, "made without vhf and vhm")->required();
+  std::vector<std::string> trials;
+  auto* collisions = app.add_subcommand("collisions", "bones of a real hip in tracked poses");
+  collisions->add_option("trials", trials, "prefixes of sta_simulate.py's files")->required();
   CLI11_PARSE(app, argc, argv);
   try {
     if (centres->parsed()) coxa::verify::print_centres(shared);
     if (heads->parsed()) coxa::verify::learn_heads(shared, out);
+    if (collisions->parsed()) coxa::verify::print_collisions(shared, trials);
     if (frames->parsed()) coxa::verify::print_frames(shared, atlas);
   } catch (const coxa::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
