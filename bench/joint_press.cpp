@@ -1,6 +1,8 @@
 // Presses the head of a hip into its socket by a prescribed way and prints what comes of it: the
 // case that tools/calculix_hip.py runs in CalculiX. Usage: joint_press JOINT.toml --way MM
-// --along X Y Z (image axes) [--no-penetration] [--decks DIR] [--ten-node]
+// --along X Y Z (image axes) [--flexion DEG] [--rotation DEG] [--withdraw MM] [--no-penetration]
+// [--decks DIR] [--ten-node]. The head is turned by flexion and internal rotation from the image
+// pose and moved back by `withdraw` first, without strain: the way starts there.
 #include <coxa/core/error.h>
 #include <coxa/io/tets.h>
 #include <coxa/joint/simulate.h>
@@ -24,6 +26,8 @@ using namespace coxa;
 struct Arguments {
   double way = 0.7;  // mm
   Vec3 along = Vec3::Zero();
+  motion::HipAngles turn;  // rad
+  double withdraw = 0.0;   // mm, against `along`
   bool penalty_only = true;
   std::filesystem::path decks;  // empty: none
   bool ten_node = false;        // of the decks
@@ -38,6 +42,9 @@ Arguments read(int argc, char** argv) {
     if (word == "--way") arguments.way = std::stod(value());
     if (word == "--along")
       for (double& component : arguments.along) component = std::stod(value());
+    if (word == "--flexion") arguments.turn.flexion = radians(std::stod(value()));
+    if (word == "--rotation") arguments.turn.internal_rotation = radians(std::stod(value()));
+    if (word == "--withdraw") arguments.withdraw = std::stod(value());
     if (word == "--no-penetration") arguments.penalty_only = false;
     if (word == "--decks") arguments.decks = value();
     if (word == "--ten-node") arguments.ten_node = true;
@@ -70,6 +77,16 @@ TetMesh curved_ten_node(const TetMesh& mesh) {
       ten.points.row(middle) += 0.25 * bulge * (normals.row(a) + normals.row(b)).normalized();
     }
   return ten;
+}
+
+/// Where the head starts from, as its rest: turned in pelvis axes from the image pose.
+void update_start(joint::JointModel& model, const Arguments& arguments) {
+  const Mat3 R_PF = motion::rotation_from_angles(arguments.turn, model.side);
+  const Mat3 turn = model.X_IP.R * R_PF * model.X_IP.R.transpose();
+  const Vec3 centre = model.X_IF.p;
+  const RigidTransform X{turn, centre - turn * centre - arguments.withdraw * arguments.along};
+  model.femoral_cartilage.points = transformed(model.femoral_cartilage.points, X);
+  model.X_IF = X * model.X_IF;
 }
 
 void write_decks(const joint::JointModel& model, const Arguments& arguments) {
@@ -113,6 +130,7 @@ int main(int argc, char** argv) {
     joint::JointModel model = pipeline::read_joint_model(
         request, pipeline::read_motion_artefacts(request.motion, request.side).frames);
     model.hip_bone = model.femur = {};
+    update_start(model, arguments);
     if (!arguments.decks.empty()) write_decks(model, arguments);
     press(model, arguments);
   } catch (const Error& error) {

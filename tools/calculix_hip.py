@@ -2,7 +2,7 @@
 """A hip pressed by a prescribed way in CalculiX (Debian package calculix-ccx), beside coxa on the same meshes.
 
 usage: calculix_hip.py JOINT.toml [--press build/release/joint_press] [--way 0.7] [--along X Y Z] [--stiffness 100]
-                       [--ten-node] [--threads 1] [--work DIR]
+                       [--flexion DEG] [--rotation DEG] [--withdraw MM] [--ten-node] [--threads 1] [--work DIR]
 
 The deck is the meshes that joint_press writes as .inp, with the socket's bone side held, the head's bone side moved, E 12 MPa
 and Poisson's ratio 0.42, frictionless surface-to-surface penalty contact, large deformations.  Default direction: against the
@@ -143,6 +143,9 @@ def main():
     parser.add_argument("--press", default=ROOT / "build/release/joint_press")
     parser.add_argument("--way", type=float, default=0.7)
     parser.add_argument("--along", type=float, nargs=3, default=AXIS_M2_LEFT)
+    parser.add_argument("--flexion", type=float, default=0.0, help="the head is turned so first, degrees")
+    parser.add_argument("--rotation", type=float, default=0.0, help="internal, degrees")
+    parser.add_argument("--withdraw", type=float, default=0.0, help="and moved back by so much, mm: the way starts there")
     parser.add_argument("--stiffness", type=float, default=100.0)
     parser.add_argument("--ten-node", action="store_true")
     parser.add_argument("--threads", type=int, default=1)
@@ -150,7 +153,8 @@ def main():
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
     along = np.array(options.along) / np.linalg.norm(options.along)
-    ours = [str(options.press), options.joint, "--way", str(options.way), "--along", *map(str, along), "--decks", str(options.work)]
+    ours = [str(options.press), options.joint, "--way", str(options.way), "--along", *map(str, along),
+            "--flexion", str(options.flexion), "--rotation", str(options.rotation), "--withdraw", str(options.withdraw), "--decks", str(options.work)]
     print("coxa:", subprocess.run(ours + ["--ten-node"] * options.ten_node, check=True, capture_output=True, text=True).stdout, end="")
     meshes = {"socket": parse((options.work / "acetabular.inp").read_text()),
               "head": parse((options.work / "femoral.inp").read_text())}
