@@ -86,6 +86,11 @@ export function beginSubject(name: string, withLandmarks: boolean): string {
   return target;
 }
 
+/** Gives a subject just begun the segmentation of the finished one, which has the same image and landmarks. */
+export function takeSegmentation(target: string): void {
+  cpSync(resolve(folder, "result/segment"), resolve(target, "segment"), { recursive: true });
+}
+
 export interface Served {
   url: string;
   port: number;

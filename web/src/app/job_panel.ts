@@ -39,7 +39,9 @@ export class JobPanel {
     this.cancel = button("Stop", () => send({ type: "job_cancel" }), { disabled: true });
     this.element.append(make("h2", {}, "Run"));
     if (!info.side) {
-      this.element.append(labelled("Side of the hip", select([["right", "right"], ["left", "left"]], (value) => (side = value as "left" | "right"))));
+      const choice = select([["right", "right"], ["left", "left"]], (value) => (side = value as "left" | "right"));
+      choice.dataset["testid"] = "job-side";
+      this.element.append(labelled("Side of the hip", choice));
     }
     this.element.append(make("div", { class: "buttons" }, ...this.buttons, this.cancel), this.bar, this.text, this.warnings);
     this.show({ state: "none" });
