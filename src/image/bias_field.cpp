@@ -153,13 +153,15 @@ struct LogField {
   double low = 0.0, high = 0.0;
 };
 
-LogField fit_log_field(const Samples& samples, const BiasFieldOptions& options) {
+LogField fit_log_field(const Samples& samples, const BiasFieldOptions& options,
+                       const Monitor& monitor) {
   const MatX& A = samples.terms;
   const double ridge =
       1e-6 * static_cast<double>(A.rows());  // where the body does not fill the volume
   const Eigen::LLT<MatX> normal(A.transpose() * A + ridge * MatX::Identity(A.cols(), A.cols()));
   VecX coefficients = VecX::Zero(A.cols());
   for (int n = 0; n < options.iterations; ++n) {
+    monitor.check_cancelled();
     const VecX field = A * coefficients;
     const VecX u = samples.log_values - field;
     VecX residual = field + u - sharpened(u, options.width);
@@ -176,14 +178,15 @@ LogField fit_log_field(const Samples& samples, const BiasFieldOptions& options) 
 
 }  // namespace
 
-Volume bias_field(const Volume& volume, const BiasFieldOptions& options) {
+Volume bias_field(const Volume& volume, const BiasFieldOptions& options, const Monitor& monitor) {
   check(options);
   const Polynomial polynomial(volume, options.degree);
   const LogField log_field =
-      fit_log_field(gather(volume, polynomial, options.working_voxel), options);
+      fit_log_field(gather(volume, polynomial, options.working_voxel), options, monitor);
   Volume field = volume;
   const Index ny = volume.size[1];
   parallel_for(static_cast<std::int64_t>(ny) * volume.size[2], [&](Index row) {
+    monitor.check_cancelled();
     const Index j = row % ny, k = row / ny;
     for (Index i = 0; i < volume.size[0]; ++i) {
       field.values[static_cast<std::size_t>(volume.offset(i, j, k))] = static_cast<float>(
@@ -194,8 +197,9 @@ Volume bias_field(const Volume& volume, const BiasFieldOptions& options) {
   return field;
 }
 
-Volume bias_corrected(const Volume& volume, const BiasFieldOptions& options) {
-  const Volume field = bias_field(volume, options);
+Volume bias_corrected(const Volume& volume, const BiasFieldOptions& options,
+                      const Monitor& monitor) {
+  const Volume field = bias_field(volume, options, monitor);
   Volume result = volume;
   for (std::size_t i = 0; i < result.values.size(); ++i) result.values[i] /= field.values[i];
   return result;

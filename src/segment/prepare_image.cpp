@@ -48,11 +48,11 @@ double intensity_range(const Volume& volume) {
 
 }  // namespace
 
-PreparedImage prepare_image(const Volume& volume, bool correct_bias) {
+PreparedImage prepare_image(const Volume& volume, bool correct_bias, const Monitor& monitor) {
   check(volume);
   PreparedImage image;
   require(intensity_range(volume) > 0.0, "the image is the same brightness everywhere");
-  image.volume = correct_bias ? bias_corrected(volume) : volume;
+  image.volume = correct_bias ? bias_corrected(volume, {}, monitor) : volume;
   image.intensity_range = intensity_range(image.volume);
   return image;
 }

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 namespace coxa {
@@ -133,6 +134,13 @@ TEST(BiasField, EveryOptionHasItsEffect) {
   EXPECT_THROW(bias_field(scene.image, {.width = 0.0}), Error);
   EXPECT_THROW(bias_field(scene.image, {.tolerance = 0.0}), Error);
   EXPECT_THROW(bias_field(scene.image, {.working_voxel = 60.0}), Error);
+}
+
+TEST(BiasField, StopsWhenTheUserAsks) {
+  const std::atomic<bool> stop = true;
+  Monitor monitor;
+  monitor.cancel_flag = &stop;
+  EXPECT_THROW(bias_corrected(make_scene(0.4).image, {}, monitor), Error);
 }
 TEST(BiasField, IsBitIdenticalForAnyThreadCount) {
   const Scene scene = make_scene(1.0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <coxa/core/monitor.h>
 #include <coxa/image/volume.h>
 
 #include <vector>
@@ -37,10 +38,12 @@ struct BiasFieldOptions {
 /// polynomial keeps it smooth; repeated.
 /// Source: N3, Sled et al. 1998 (IEEE TMI 17:87), iterated on the remaining field as in N4,
 /// Tustison et al. 2010; polynomial in place of B-splines.
-/// @throws Error bad_input if an option is out of range or the image has no foreground
-Volume bias_field(const Volume& volume, const BiasFieldOptions& options = {});
+/// @throws Error bad_input if an option is out of range or the image has no foreground; cancelled
+Volume bias_field(const Volume& volume, const BiasFieldOptions& options = {},
+                  const Monitor& monitor = {});
 
 /// The image divided by its bias field.
-Volume bias_corrected(const Volume& volume, const BiasFieldOptions& options = {});
+Volume bias_corrected(const Volume& volume, const BiasFieldOptions& options = {},
+                      const Monitor& monitor = {});
 
 }  // namespace coxa

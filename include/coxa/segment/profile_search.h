@@ -1,5 +1,6 @@
 #pragma once
 
+#include <coxa/core/monitor.h>
 #include <coxa/image/volume.h>
 #include <coxa/segment/profile_kinds.h>
 #include <coxa/shape/atlas.h>
@@ -18,7 +19,7 @@ struct PreparedImage {
 
 /// Bias-corrected (on request) copy with its intensity range. @throws Error bad_input for an
 /// unusable image
-PreparedImage prepare_image(const Volume& volume, bool correct_bias);
+PreparedImage prepare_image(const Volume& volume, bool correct_bias, const Monitor& monitor = {});
 
 /// How profiles are compared at one resolution.
 struct ProfileSearch {
