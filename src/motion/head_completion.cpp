@@ -83,13 +83,22 @@ ShapedHead most_probable_head(const SurfaceSamples& samples, const Sphere& first
 }
 
 struct Gaps {
-  Points directions;   // off the neck with nothing seen within 10 degrees, in the head's axes
+  Points directions;   // off the neck with no bone within 10 degrees, in the head's axes
   double share = 0.0;  // of all directions off the neck
 };
 
-Gaps gaps_in_view(const ShapedHead& head, double neck_cone) {
+// a bump or a fovea is in view, though the sphere leaves it out
+Gaps gaps_in_view(const SurfaceSamples& samples, const ShapedHead& head, double neck_cone) {
+  constexpr double kReach = 6.0;  // mm about the radius
   const double near = std::cos(radians(10.0));
-  const Points directions = spiral_directions(kDirections), seen = head.seen * head.axes;
+  const Points arms = samples.points.rowwise() - head.sphere.centre.transpose();
+  const VecX distances = arms.rowwise().norm();
+  std::vector<Index> bone;
+  for (Index k = 0; k < arms.rows(); ++k) {
+    if (std::abs(distances[k] - head.sphere.radius) < kReach) bone.push_back(k);
+  }
+  const Points seen = arms(bone, Eigen::all).rowwise().normalized() * head.axes;
+  const Points directions = spiral_directions(kDirections);
   std::vector<Index> missing;
   double all = 0.0;
   for (Index k = 0; k < kDirections; ++k) {
@@ -151,7 +160,7 @@ CompletedHead complete_head(const SurfaceSamples& samples, const RegionFit& seen
   check_head_shape(prior.shape);
   CompletedHead completed{samples};
   const ShapedHead head = most_probable_head(samples, seen.sphere, prior, options);
-  const Gaps gaps = gaps_in_view(head, options.neck_cone);
+  const Gaps gaps = gaps_in_view(samples, head, options.neck_cone);
   const double weight = std::clamp((kWhole - 1.0 + gaps.share) / (kWhole - kPart), 0.0, 1.0);
   if (weight == 0) return completed;
   const double radius = head.sphere.radius;

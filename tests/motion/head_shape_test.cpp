@@ -136,6 +136,16 @@ TEST(HeadShape, LeavesAWholeHeadAlone) {
   EXPECT_EQ(plain.interval, completed.interval);
   EXPECT_EQ(plain.region, completed.region);
 }
+TEST(HeadShape, LeavesABumpAlone) {
+  const HeadShape shape = some_shape();
+  TriMesh femur = shaped_femur(shape, 1.0);
+  const Vec3 top = Vec3(0.5, -0.6, 0.62).normalized();
+  for (Index v = 0; v < femur.n_vertices(); ++v) {
+    const Vec3 p = femur.points.row(v);
+    if (p.norm() < 25.0 && p.normalized().dot(top) > 0.75) femur.points.row(v) *= 1.18;
+  }
+  EXPECT_EQ(head_of(femur, {}).centre, head_of(femur, HeadPrior{shape, Side::right}).centre);
+}
 TEST(HeadShape, IsBitIdenticalForOneAndEightThreads) {
   const HeadShape shape = some_shape();
   const TriMesh half = half_of(shaped_femur(shape, 1.2), Vec3::UnitZ());
