@@ -28,6 +28,11 @@ void add_build(CLI::App& verb, Context& context) {
   build
       ->add_option("--profile-hips", request->profiles.n_hips, "virtual hips per class of profiles")
       ->check(CLI::PositiveNumber);
+  build->add_flag("!--no-muscles", request->muscles, "bones and cartilages only");
+  build
+      ->add_option("--base", request->base,
+                   "atlas whose bones and cartilages are taken; only muscles are built")
+      ->check(CLI::ExistingFile);
   build->add_option("--out", *out, "atlas file to write")->required();
   build->callback([request, out, &context] {
     request->profiles.seed = context.common.seed;

@@ -1,4 +1,5 @@
 #include <coxa/core/error.h>
+#include <coxa/pipeline/muscle_names.h>
 #include <coxa/pipeline/segment_stage.h>
 
 #include "commands.h"
@@ -13,10 +14,12 @@ struct SegmentArguments {
 };
 
 std::vector<std::string> structures_from(const std::string& list) {
-  const std::map<std::string, std::vector<std::string>> groups{
+  std::map<std::string, std::vector<std::string>> groups{
       {"bones", {"femur", "hip_bone"}},
       {"cartilage", {"femoral_cartilage", "acetabular_cartilage"}},
-      {"all", {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"}}};
+      {"muscles", pipeline::muscle_names()}};
+  for (const char* group : {"bones", "cartilage", "muscles"})
+    groups["all"].insert(groups["all"].end(), groups[group].begin(), groups[group].end());
   std::vector<std::string> names;
   for (const std::string& word : CLI::detail::split(list, ',')) {
     const auto group = groups.find(word);
@@ -75,7 +78,7 @@ void add_segment(CLI::App& app, Context& context) {
                    "how far of the way to its pins a surface goes")
       ->check(CLI::Range(0.0, 1.0));
   verb->add_option("--structures", arguments->structures,
-                   "bones, cartilage, all, or names, separated by commas");
+                   "bones, cartilage, muscles, all, or names, separated by commas");
   verb->add_option("--contrast", arguments->contrast,
                    "profiles of the atlas to use; the best fitting where not given");
   verb->add_option("--atlas", arguments->atlas, "atlas file; the shipped one where not given")

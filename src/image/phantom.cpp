@@ -15,7 +15,6 @@
 namespace coxa {
 namespace {
 
-constexpr double kLargestSample = 0.45;  ///< mm between sub-voxel samples
 constexpr double kTile = 12.0;  ///< mm, side of the tiles for which near muscles are gathered
 constexpr Index kBatch = 16;    ///< slices between two reports of progress
 constexpr double kMuscleLevel = 100.0;  ///< mean signal of muscle in the image
@@ -34,6 +33,8 @@ void check(const std::vector<TissueSurface>& surfaces, const PhantomOptions& opt
           options.field_of_view.transpose(), " mm is smaller than a voxel");
   require(options.snr > 0.0, "snr must be positive, got ", options.snr);
   require(0.0 <= options.bias && options.bias < 1.0, "bias must be in [0, 1), got ", options.bias);
+  require(options.largest_sample > 0.0, "largest_sample must be positive, got ",
+          options.largest_sample, " mm");
   require(options.texture >= 0.0, "texture must not be negative, got ", options.texture);
   require(options.joint_reach >= 0.0, "joint_reach must not be negative, got ",
           options.joint_reach);
@@ -77,7 +78,7 @@ class SlicePainter {
         grid_(grid),
         body_(options, options.body_centre.value_or(grid_centre(grid))) {
     for (int a = 0; a < 3; ++a) {
-      samples_[a] = static_cast<Index>(std::ceil(grid.spacing[a] / kLargestSample));
+      samples_[a] = static_cast<Index>(std::ceil(grid.spacing[a] / options.largest_sample));
       step_[a] = grid.spacing[a] / samples_[a];
     }
     width_ = step_.maxCoeff();

@@ -32,6 +32,7 @@ PhantomBody::PhantomBody(const PhantomOptions& options, const Vec3& body_centre)
       muscle_(tissue_signal(Tissue::muscle, options.contrast)),
       fat_(tissue_signal(Tissue::fat, options.contrast)),
       skin_(tissue_signal(Tissue::skin, options.contrast)) {
+  if (!options.muscles) return;
   Rng rng(options.seed ^ 0x5eedULL);
   const Vec2 reach = options.body_semi_axes;
   const double length = 0.5 * options.field_of_view.norm() + 80.0;

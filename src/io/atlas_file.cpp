@@ -13,7 +13,11 @@ namespace coxa::io {
 namespace {
 
 constexpr std::string_view kMagic = "coxa-atlas";
-constexpr std::int32_t kFormat = 3;
+constexpr std::int32_t kFormat = 4;
+// read too: it knew no muscles, and marked what is generic by one
+constexpr std::int32_t kFormatWithoutMuscles = 3;
+// kinds of a structure, in one byte
+constexpr std::uint8_t kGeneric = 1, kMuscle = 2;
 // no part of an atlas has more entries; a larger count means a broken file
 constexpr std::int64_t kMostEntries = std::int64_t{1} << 28;
 
@@ -172,7 +176,8 @@ void write_structure(Writer& out, const shape::StructureModel& model) {
   out.matrix<float>(model.shape.deviations);
   out.value(static_cast<std::int64_t>(model.profiles.size()));
   for (const shape::ProfileSet& set : model.profiles) write_profiles(out, set);
-  out.value(static_cast<std::uint8_t>(model.generic));
+  out.value(
+      static_cast<std::uint8_t>((model.generic ? kGeneric : 0) + (model.muscle ? kMuscle : 0)));
   out.value(model.n_bone_side);
   out.value(static_cast<std::int64_t>(model.landmark_vertices.size()));
   for (const auto& [name, vertex] : model.landmark_vertices) {
@@ -200,7 +205,9 @@ shape::StructureModel read_structure(Reader& in) {
   const auto n_sets = in.count();
   for (std::int64_t i = 0; i < n_sets; ++i) model.profiles.push_back(read_profiles(in));
   model.reference = reference_of(model.hierarchy.levels.back());
-  model.generic = in.value<std::uint8_t>() != 0;
+  const auto kind = in.value<std::uint8_t>();
+  model.generic = (kind & kGeneric) != 0;
+  model.muscle = (kind & kMuscle) != 0;
   model.n_bone_side = in.value<Index>();
   for (auto n = in.count(); n > 0; --n) {
     const std::string name = in.text();
@@ -235,7 +242,8 @@ shape::Atlas read_atlas(const std::filesystem::path& path) {
   }
   Reader in(inflated(std::string_view(file).substr(kMagic.size()), path.string()), path);
   const auto format = in.value<std::int32_t>();
-  if (format != kFormat) in.broken(join_text("format ", format, ", this coxa reads ", kFormat));
+  if (format != kFormat && format != kFormatWithoutMuscles)
+    in.broken(join_text("format ", format, ", this coxa reads ", kFormat));
   shape::Atlas atlas;
   atlas.attribution = in.text();
   for (auto n = in.count(); n > 0; --n) atlas.subjects.push_back(in.text());

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "label_map_bones.h"
+#include "muscle_examples.h"
 
 namespace coxa::pipeline {
 namespace fs = std::filesystem;
@@ -56,6 +57,7 @@ ScannedHip read_hip(const std::string& set, const std::string& subject, const fs
     hip.surfaces[structure].mesh = io::read_surface(path);
     if (const auto n = io::read_bone_side_faces(path)) hip.bone_side_faces[structure] = *n;
   }
+  hip.surfaces.merge(read_muscles(folder));
   return hip;
 }
 
@@ -87,6 +89,10 @@ std::vector<ScannedHip> scan_label_maps(const fs::path& folder) {
       hip.surfaces["hip_bone"].mesh = bones.hip_bone;
       hip.surfaces["femur"].mesh = bones.femur;
       hip.trust["hip_bone"] = bones.hip_bone_trust;
+      for (auto& [muscle, surface] : muscles_from_labels(file, side)) {
+        hip.surfaces[muscle].mesh = std::move(surface.mesh);
+        if (surface.trust.size() > 0) hip.trust[muscle] = std::move(surface.trust);
+      }
       hips.push_back(std::move(hip));
     }
   }

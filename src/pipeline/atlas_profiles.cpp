@@ -2,9 +2,11 @@
 
 #include <coxa/core/error.h>
 #include <coxa/image/phantom.h>
+#include <coxa/mesh/simplex_mesh.h>
 #include <coxa/shape/profiles.h>
 #include <coxa/shape/virtual_hip.h>
 
+#include <algorithm>
 #include <deque>
 #include <map>
 
@@ -17,6 +19,12 @@ constexpr double kMargin = 12.0;       // mm of image around the surfaces
 constexpr double kCortex = 1.0;        // mm, of the hip bone
 constexpr double kTouchingGap = 0.05;  // mm
 constexpr double kFluidGap = 0.5;      // mm
+// images that muscles' profiles are learned on: noise-free, so that where two muscles touch
+// nothing is learned
+constexpr double kMuscleVoxel = 1.5, kMuscleSample = 1.0;  // mm
+constexpr double kFatAround = 400.0;                       // mm, farther than any image reaches
+// an example with a smaller share of the muscles has fat where its other muscles are
+constexpr double kLeastShare = 0.85;
 
 Contrast contrast_named(const std::string& name) {
   const std::map<std::string, Contrast> known{
@@ -56,6 +64,36 @@ PhantomOptions phantom_around(const shape::VirtualHip& hip, const AtlasProfileOp
   return phantom;
 }
 
+/// Muscles of an example in the atlas frame; what it lacks is the mean's.
+shape::VirtualHip with_means(const shape::Atlas& atlas,
+                             const std::map<std::string, TriMesh>& surfaces) {
+  shape::VirtualHip hip = surfaces;
+  for (const shape::StructureModel& model : atlas.structures) {
+    if (model.muscle && !hip.contains(model.name))
+      hip[model.name] = dual_surface(model.hierarchy.levels.back());
+  }
+  return hip;
+}
+
+/// Muscles in fat, the mean bones and cartilages among them.
+Volume image_of_muscles(const shape::Atlas& atlas, const shape::VirtualHip& muscles,
+                        const std::string& contrast, std::uint64_t seed) {
+  shape::VirtualHip around = shape::mean_hip(atlas);
+  std::vector<TissueSurface> tissues;
+  for (const auto& [name, mesh] : muscles)
+    tissues.push_back({mesh.points, mesh.triangles, Tissue::muscle, {}});
+  for (TissueSurface& tissue : tissues_of(around)) tissues.push_back(std::move(tissue));
+  around.insert(muscles.begin(), muscles.end());
+  PhantomOptions phantom = phantom_around(around, {.voxel = kMuscleVoxel, .snr = kInfinity});
+  phantom.contrast = contrast_named(contrast);
+  phantom.texture = 0.0;
+  phantom.muscles = false;
+  phantom.body_semi_axes = Vec2::Constant(kFatAround);
+  phantom.largest_sample = kMuscleSample;
+  phantom.seed = seed;
+  return simulate_mri(tissues, phantom);
+}
+
 }  // namespace
 
 void update_atlas_profiles(shape::Atlas& atlas, const AtlasProfileOptions& options,
@@ -85,6 +123,40 @@ void update_atlas_profiles(shape::Atlas& atlas, const AtlasProfileOptions& optio
     }
   }
   shape::update_profiles(atlas, imaged);
+}
+
+void update_muscle_profiles(shape::Atlas& atlas, const std::vector<shape::CarriedMuscles>& examples,
+                            const AtlasProfileOptions& options, const Monitor& monitor) {
+  const auto n_muscles = static_cast<double>(
+      std::count_if(atlas.structures.begin(), atlas.structures.end(),
+                    [](const shape::StructureModel& model) { return model.muscle; }));
+  std::vector<shape::VirtualHip> hips = {with_means(atlas, {})};
+  for (const shape::CarriedMuscles& example : examples) {
+    if (static_cast<double>(example.surfaces.size()) >= kLeastShare * n_muscles)
+      hips.push_back(with_means(atlas, example.surfaces));
+  }
+  std::vector<std::vector<Volume>> images(options.contrasts.size());
+  for (std::size_t c = 0; c < options.contrasts.size(); ++c) {
+    for (std::size_t h = 0; h < hips.size(); ++h) {
+      monitor.check_cancelled();
+      images[c].push_back(image_of_muscles(atlas, hips[h], options.contrasts[c], options.seed + h));
+      monitor.progress("muscle profiles", static_cast<double>(c * hips.size() + h + 1) /
+                                              static_cast<double>(images.size() * hips.size()));
+    }
+  }
+  for (shape::StructureModel& model : atlas.structures) {
+    if (!model.muscle) continue;
+    model.profiles.clear();
+    for (std::size_t c = 0; c < options.contrasts.size(); ++c) {
+      std::vector<shape::ProfileExample> shown;
+      for (std::size_t h = 0; h < hips.size(); ++h) {
+        SimplexMesh mesh = model.hierarchy.levels.back();
+        mesh.points = make_simplex_mesh(hips[h].at(model.name)).points;
+        shown.push_back({&images[c][h], mesh.points, simplex_normals(mesh)});
+      }
+      model.profiles.push_back(shape::learn_profiles(shown, options.contrasts[c]));
+    }
+  }
 }
 
 }  // namespace coxa::pipeline

@@ -1,7 +1,13 @@
 #include <coxa/pipeline/atlas_stage.h>
 
 #include <coxa/io/atlas_file.h>
+#include <coxa/io/files.h>
 #include <coxa/pipeline/stage.h>
+#include <coxa/shape/muscles.h>
+
+#include <algorithm>
+
+#include "muscle_examples.h"
 
 namespace coxa::pipeline {
 namespace fs = std::filesystem;
@@ -22,6 +28,35 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
+/// Those that the base was computed from: nobody left out there comes back with his muscles.
+std::vector<shape::HipExample> known_to(const shape::Atlas& base,
+                                        std::vector<shape::HipExample> examples) {
+  std::erase_if(examples, [&](const shape::HipExample& example) {
+    return std::find(base.subjects.begin(), base.subjects.end(), example.name) ==
+           base.subjects.end();
+  });
+  return examples;
+}
+
+shape::Atlas built_atlas(const AtlasRequest& request, const Monitor& monitor) {
+  auto examples = load_atlas_examples(request.data, request.examples, monitor);
+  shape::Atlas atlas;
+  if (request.base.empty()) {
+    atlas = shape::build_atlas(examples, {}, monitor);
+    update_atlas_profiles(atlas, request.profiles, monitor);
+  } else {
+    atlas = io::read_atlas(request.base);
+    std::erase_if(atlas.structures, [](const auto& model) { return model.muscle; });
+    examples = known_to(atlas, std::move(examples));
+  }
+  if (request.muscles) {
+    const auto carried = shape::add_muscles(atlas, examples, muscle_names(), {}, monitor);
+    update_muscle_profiles(atlas, carried, request.profiles, monitor);
+  }
+  atlas.attribution = kAttribution;
+  return atlas;
+}
+
 }  // namespace
 
 Record build_atlas_file(const AtlasRequest& request, const fs::path& out, const Monitor& monitor) {
@@ -29,14 +64,13 @@ Record build_atlas_file(const AtlasRequest& request, const fs::path& out, const 
   wanted.verb = "atlas";
   wanted.options = {{"exclude", joined(request.examples.exclude)},
                     {"exclude_structures", joined(request.examples.exclude_structures)},
+                    {"muscles", request.muscles},
                     {"contrasts", joined(request.profiles.contrasts)},
                     {"profile_hips", std::int64_t{request.profiles.n_hips}},
                     {"seed", static_cast<std::int64_t>(request.profiles.seed)}};
+  if (!request.base.empty()) wanted.inputs["base"] = io::sha256_of_path(request.base);
   const auto body = [&](const fs::path& partial, Record& record) {
-    const auto examples = load_atlas_examples(request.data, request.examples, monitor);
-    shape::Atlas atlas = shape::build_atlas(examples, {}, monitor);
-    update_atlas_profiles(atlas, request.profiles, monitor);
-    atlas.attribution = kAttribution;
+    const shape::Atlas atlas = built_atlas(request, monitor);
     const fs::path file = partial / out.filename();
     io::write_atlas(file, atlas);
     record.figures["subjects"] = static_cast<std::int64_t>(atlas.subjects.size());

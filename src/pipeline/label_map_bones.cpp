@@ -59,21 +59,22 @@ TriMesh largest_piece(const TriMesh& mesh) {
   return sub_mesh(mesh, kept).mesh;
 }
 
-TriMesh surface_of(const Volume& labels, float label, Side side, double middle) {
-  const Volume smooth =
-      smoothed(resampled_isotropic(mask_of(labels, label, side, middle), kGrid), kSmoothing);
+}  // namespace
+
+double middle_of_pelvis(const Volume& labels) { return middle_of(labels, kPelvis); }
+
+TriMesh surface_of_mask(const Volume& mask) {
+  const Volume smooth = smoothed(resampled_isotropic(mask, kGrid), kSmoothing);
   return largest_piece(iso_surface(smooth.size, smooth.values, 0.5,
                                    [&](const Vec3& i) { return smooth.position(i); }));
 }
 
-}  // namespace
-
 LabelledBones bones_from_labels(const std::filesystem::path& path, Side side) {
   const Volume labels = io::read_volume(path);
-  const double middle = middle_of(labels, kPelvis);
+  const double middle = middle_of_pelvis(labels);
   LabelledBones bones;
-  bones.hip_bone = surface_of(labels, kPelvis, side, middle);
-  bones.femur = surface_of(labels, kFemur, side, middle);
+  bones.hip_bone = surface_of_mask(mask_of(labels, kPelvis, side, middle));
+  bones.femur = surface_of_mask(mask_of(labels, kFemur, side, middle));
   bones.hip_bone_trust =
       ((bones.hip_bone.points.col(0).array() - middle).abs() > kCutReach).cast<double>();
   return bones;

@@ -2,6 +2,8 @@
 
 #include <coxa/mesh/tri_mesh.h>
 
+#include <coxa/image/volume.h>
+
 #include <filesystem>
 
 namespace coxa::pipeline {
@@ -15,5 +17,11 @@ struct LabelledBones {
 /// Smooth surfaces of labels 1 (pelvis) and 2 (femur), both sides under one number, cut at the
 /// body's middle.
 LabelledBones bones_from_labels(const std::filesystem::path& path, Side side);
+
+/// x of the middle plane of the pelvis in a label map, LPS mm.
+double middle_of_pelvis(const Volume& labels);
+
+/// Surface of a mask's largest piece, the steps of thick slices smoothed away.
+TriMesh surface_of_mask(const Volume& mask);
 
 }  // namespace coxa::pipeline

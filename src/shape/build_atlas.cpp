@@ -1,77 +1,22 @@
 #include <coxa/shape/build_atlas.h>
 
 #include <coxa/core/error.h>
-#include <coxa/geom/fits.h>
-#include <coxa/mesh/hierarchy.h>
 #include <coxa/shape/shape_modes.h>
 #include <coxa/shape/virtual_hip.h>
 
-#include <cmath>
-
-#include <coxa/mesh/unfold.h>
 #include "cartilage_place.h"
 #include "correspondence.h"
 #include "joint_fit.h"
+#include "make_model.h"
 
 namespace coxa::shape {
 namespace {
-
-Points centroids(const Points& vertices, const Triangles& triangles) {
-  Points points(triangles.rows(), 3);
-  for (Index t = 0; t < triangles.rows(); ++t) {
-    points.row(t) = (vertices.row(triangles(t, 0)) + vertices.row(triangles(t, 1)) +
-                     vertices.row(triangles(t, 2))) /
-                    3.0;
-  }
-  return points;
-}
 
 /// Share of the examples that show each vertex: what few show hardly counts for pose and size.
 VecX share_observed(const Correspondence& all) {
   VecX share = VecX::Zero(all.observed.front().size());
   for (const VecX& observed : all.observed) share += observed;
   return share / static_cast<double>(all.observed.size());
-}
-
-std::vector<SimplexParameters> reference_parameters(const SimplexMesh& mesh) {
-  std::vector<SimplexParameters> parameters(static_cast<std::size_t>(mesh.n_vertices()));
-  for (Index v = 0; v < mesh.n_vertices(); ++v) {
-    const Vec3 p = mesh.points.row(v), a = mesh.points.row(mesh.neighbours(v, 0)),
-               b = mesh.points.row(mesh.neighbours(v, 1)),
-               c = mesh.points.row(mesh.neighbours(v, 2));
-    parameters[static_cast<std::size_t>(v)] = simplex_parameters(p, a, b, c);
-  }
-  return parameters;
-}
-
-double root_mean_square(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return values.empty() ? kNaN : std::sqrt(sum / static_cast<double>(values.size()));
-}
-
-/// @param mean where the mean shape lies in the atlas frame; the modes are turned along with it
-StructureModel make_model(const std::string& name, const Correspondence& all,
-                          const AlignedShapes& aligned, const Points& mean,
-                          const AtlasOptions& options, const Monitor& monitor) {
-  StructureModel model;
-  model.name = name;
-  model.n_bone_side = all.n_bone_side;
-  TriMesh surface{mean, all.triangles};
-  if (!update_unfolded(surface)) monitor.warn("the mean " + name + " cuts itself");
-  const int n_levels = options.structures.at(name).n_levels;
-  model.hierarchy = make_hierarchy(surface, {.n_levels = n_levels});
-  const Similarity to_atlas = fit_similarity(aligned.mean, mean);
-  AlignedShapes simplex;
-  for (const Points& shape : aligned.shapes) {
-    simplex.shapes.push_back(
-        centroids(transformed(to_atlas.scale * shape, to_atlas.X), all.triangles));
-  }
-  simplex.mean = centroids(transformed(to_atlas.scale * aligned.mean, to_atlas.X), all.triangles);
-  model.shape = principal_modes(simplex, options.variance_share);
-  model.leave_one_out_error = root_mean_square(leave_one_out_errors(simplex));
-  model.reference = reference_parameters(model.hierarchy.levels.back());
-  return model;
 }
 
 bool is_cartilage(const std::string& name) { return name.find("_cartilage") != std::string::npos; }
@@ -126,7 +71,8 @@ Atlas build_atlas(const std::vector<HipExample>& examples, const AtlasOptions& o
     const Correspondence& all = bone.correspondence;
     const AlignedShapes aligned = align_shapes(all.vertices, share_observed(all));
     bone.mean = {aligned.mean, all.triangles};
-    atlas.structures.push_back(make_model(name, all, aligned, aligned.mean, options, monitor));
+    atlas.structures.push_back(make_model(name, all, aligned, aligned.mean,
+                                          {structure.n_levels, options.variance_share}, monitor));
     bones[name] = std::move(bone);
   }
   for (const auto& [name, structure] : options.structures) {
@@ -137,7 +83,8 @@ Atlas build_atlas(const std::vector<HipExample>& examples, const AtlasOptions& o
     const BuiltBone& bone = bones.at(bone_under(name));
     const Points mean =
         placed_on_bone(aligned.mean, all, bone.mean, bone.correspondence, options.cartilage_gap);
-    atlas.structures.push_back(make_model(name, all, aligned, mean, options, monitor));
+    atlas.structures.push_back(make_model(name, all, aligned, mean,
+                                          {structure.n_levels, options.variance_share}, monitor));
   }
   update_joint_fit(atlas, options.cartilage_gap);
   atlas.landmarks = find_landmarks(mean_hip(atlas));

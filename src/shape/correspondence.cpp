@@ -46,20 +46,6 @@ VecX carried_trust(const TrustedSurface& from, const TriMesh& to) {
   return trust;
 }
 
-VecX observed_in(const Points& points, const TrustedSurface& example) {
-  const TriangleTree tree(example.mesh.points, example.mesh.triangles);
-  VecX observed = VecX::Zero(points.rows());
-  parallel_for(points.rows(), [&](Index v) {
-    const auto near = tree.nearest_within(points.row(v), kObservedWithin);
-    if (!near) return;
-    bool trusted = true;
-    for (int c = 0; c < 3 && example.trust.size() > 0; ++c)
-      trusted = trusted && example.trust[example.mesh.triangles(near->triangle, c)] > 0.0;
-    observed[v] = trusted ? 1.0 : 0.0;
-  });
-  return observed;
-}
-
 RegistrationOptions second_pass(const RegistrationOptions& options) {
   RegistrationOptions second = options;
   std::erase_if(second.lengths, [](double length) { return length > kSecondPassFrom; });
@@ -101,6 +87,20 @@ CartilageSides sides_of(const HipExample& example, const std::string& name,
 
 }  // namespace
 
+VecX observed_in(const Points& points, const TrustedSurface& example, double reach) {
+  const TriangleTree tree(example.mesh.points, example.mesh.triangles);
+  VecX observed = VecX::Zero(points.rows());
+  parallel_for(points.rows(), [&](Index v) {
+    const auto near = tree.nearest_within(points.row(v), reach);
+    if (!near) return;
+    bool trusted = true;
+    for (int c = 0; c < 3 && example.trust.size() > 0; ++c)
+      trusted = trusted && example.trust[example.mesh.triangles(near->triangle, c)] > 0.0;
+    observed[v] = trusted ? 1.0 : 0.0;
+  });
+  return observed;
+}
+
 Correspondence correspond_bone(const std::string& name, const std::vector<HipExample>& examples,
                                const StructureOptions& structure,
                                const RegistrationOptions& options, const Monitor& monitor) {
@@ -115,7 +115,7 @@ Correspondence correspond_bone(const std::string& name, const std::vector<HipExa
   for (const HipExample* example : all.examples) targets.push_back(example->surfaces.at(name));
   all.vertices = register_all(model, targets, options, name, monitor);
   for (std::size_t i = 0; i < targets.size(); ++i)
-    all.observed.push_back(observed_in(all.vertices[i], targets[i]));
+    all.observed.push_back(observed_in(all.vertices[i], targets[i], kObservedWithin));
   return all;
 }
 

@@ -16,6 +16,9 @@ struct Correspondence {
   Index n_bone_side = 0;                    ///< of a cartilage: its first triangles lie on the bone
 };
 
+/// 1 for every point within `reach` mm of a trusted place of the example, else 0.
+VecX observed_in(const Points& points, const TrustedSurface& example, double reach);
+
 /// @throws Error bad_input if no example has the structure
 Correspondence correspond_bone(const std::string& name, const std::vector<HipExample>& examples,
                                const StructureOptions& structure,

@@ -65,6 +65,7 @@ ProfileSet learn_profiles(const std::vector<ProfileExample>& examples, const std
 void update_profiles(Atlas& atlas, const std::vector<ImagedHip>& hips,
                      const ProfileOptions& options) {
   for (StructureModel& model : atlas.structures) {
+    if (model.muscle) continue;
     const SimplexMesh& finest = model.hierarchy.levels.back();
     std::map<std::string, std::vector<ProfileExample>> by_contrast;
     for (const ImagedHip& hip : hips) {

@@ -169,7 +169,8 @@ bool opened(DrawnHip& hip, double gap) {
 DrawnHip draw_once(const Atlas& atlas, Rng& rng, const VirtualHipOptions& options) {
   DrawnHip hip;
   for (const StructureModel& model : atlas.structures) {
-    if (model.n_bone_side == 0) hip.bones[model.name] = drawn_surface(model, options.spread, rng);
+    if (model.n_bone_side == 0 && !model.muscle)
+      hip.bones[model.name] = drawn_surface(model, options.spread, rng);
   }
   for (const StructureModel& model : atlas.structures) {
     if (model.n_bone_side == 0) continue;
@@ -207,7 +208,9 @@ void check(const VirtualHipOptions& options) {
 
 VirtualHip mean_hip(const Atlas& atlas) {
   VirtualHip hip;
-  for (const StructureModel& model : atlas.structures) hip[model.name] = mean_surface(model);
+  for (const StructureModel& model : atlas.structures) {
+    if (!model.muscle) hip[model.name] = mean_surface(model);
+  }
   return hip;
 }
 

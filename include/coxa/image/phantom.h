@@ -66,13 +66,15 @@ struct PhantomOptions {
   std::optional<Vec3> body_centre;  ///< LPS mm, on the body's axis; unset: the grid's centre
   Vec2 body_semi_axes = Vec2(170.0, 115.0);  ///< mm, transverse and sagittal, to the skin
   double subcutaneous_fat = 18.0;            ///< mm under the skin
+  bool muscles = true;                       ///< spindles of muscle in the body; false: fat alone
+  double largest_sample = 0.45;              ///< mm, > 0, between sub-voxel samples
   std::uint64_t seed = 1;                    ///< of muscles, shading, texture and noise
 };
 
 /// Simulated magnitude MRI of surfaces in a body of muscles, fat and skin; the mean of muscle is
 /// 100.
 ///
-/// Partial volume by signed distances on sub-voxel samples (at most 0.45 mm apart). Surfaces given
+/// Partial volume by signed distances on sub-voxel samples. Surfaces given
 /// later cover earlier ones. Muscles are random spindles parted by fat. Noise is Rician.
 /// @throws Error bad_input if an option is out of range or a surface is empty
 /// @note bit-identical for any number of threads; a whole hip at 0.8 mm takes about 11 s of one

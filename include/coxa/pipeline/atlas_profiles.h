@@ -2,6 +2,7 @@
 
 #include <coxa/core/monitor.h>
 #include <coxa/shape/atlas.h>
+#include <coxa/shape/muscles.h>
 
 #include <string>
 #include <vector>
@@ -23,5 +24,10 @@ struct AtlasProfileOptions {
 /// @throws Error bad_input for an unknown contrast or an option out of range
 void update_atlas_profiles(shape::Atlas& atlas, const AtlasProfileOptions& options,
                            const Monitor& monitor = {});
+
+/// Learns the profiles of the muscles, one set per contrast, from noise-free images simulated of
+/// the mean and of the examples that have nearly all muscles, in the atlas frame.
+void update_muscle_profiles(shape::Atlas& atlas, const std::vector<shape::CarriedMuscles>& examples,
+                            const AtlasProfileOptions& options, const Monitor& monitor = {});
 
 }  // namespace coxa::pipeline

@@ -13,6 +13,10 @@ struct AtlasRequest {
   std::filesystem::path data = "../shared/data";
   AtlasExampleOptions examples;
   AtlasProfileOptions profiles;
+  bool muscles = true;
+  /// An atlas whose bones and cartilages are taken as they are; empty: they are built. Only
+  /// examples that it was computed from give muscles.
+  std::filesystem::path base;
 };
 
 /// Builds an atlas and writes it whole, with `<stem>.json` beside it.

@@ -33,6 +33,9 @@ struct StructureModel {
   std::vector<ProfileSet> profiles;
   std::vector<SimplexParameters> reference;  ///< shape memory: of the finest mean
   bool generic = false;                      ///< built from anatomy, not from examples
+  /// Soft, between the bones: its mean lies as the mean bones carry it, and profiles are learned
+  /// for contrasts only, without regard to fluid in the joint.
+  bool muscle = false;
   /// Of a cartilage: n, so that finest vertices 0 … n-1 lie on the bone and vertex i + n is on the
   /// articular side opposite vertex i; 0 for other structures.
   Index n_bone_side = 0;

@@ -31,7 +31,7 @@ using VirtualHip = std::map<std::string, TriMesh>;
 ///         no_convergence if no usable hip comes out of many draws (the spread is too large)
 VirtualHip draw_virtual_hip(const Atlas& atlas, Rng& rng, const VirtualHipOptions& options = {});
 
-/// The mean hip: every structure's mean surface.
+/// The mean hip: the mean surface of every bone and cartilage.
 VirtualHip mean_hip(const Atlas& atlas);
 
 }  // namespace coxa::shape
