@@ -93,6 +93,15 @@ describe("the live examination", () => {
   test("axe finds no serious fault", async () => {
     expect(await seriousFaults(page)).toEqual([]);
   });
+  test("fills a 4K screen in the dark", async () => {
+    await page.setViewportSize({ width: 3840, height: 2160 });
+    await page.click("#theme");
+    await page.waitForTimeout(2500);
+    expect(await page.evaluate(() => document.documentElement.scrollHeight <= window.innerHeight)).toBe(true);
+    await page.screenshot({ path: picture("exam_4k_dark") });
+    await page.click("#theme");
+    await page.setViewportSize({ width: 1280, height: 800 });
+  });
   test("two windows each lead a hip of their own", async () => {
     const { page: second } = await open(browser, server.url);
     await second.click("#tab-exam");

@@ -82,4 +82,13 @@ describe("a finished segmentation", () => {
     await page.screenshot({ path: picture("pinned_after_1280_light") });
     expect(await seriousFaults(page)).toEqual([]);
   }, 400_000);
+  test("fills a 4K screen in the dark", async () => {
+    const { page: big } = await open(browser, server.url, { width: 3840, height: 2160, dark: true });
+    await big.click("#tab-image");
+    await big.waitForSelector("#slices canvas");
+    await big.waitForTimeout(2000);
+    expect(await big.evaluate(() => document.documentElement.scrollHeight <= window.innerHeight)).toBe(true);
+    await big.screenshot({ path: picture("image_4k_dark") });
+    await big.close();
+  });
 });
