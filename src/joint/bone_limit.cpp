@@ -41,8 +41,9 @@ std::vector<bool> limit_vertices(const JointModel& model) {
   return {counts.begin(), counts.end()};
 }
 
-BoneLimit::BoneLimit(const JointModel& model) {
-  if (!model.femur.empty()) pair_.emplace(model.hip_bone, model.femur, limit_vertices(model));
+BoneLimit::BoneLimit(const JointModel& model, const TriMesh& fixed) {
+  if (fixed.empty() || model.femur.empty()) return;
+  pair_.emplace(fixed, model.femur, limit_vertices(model));
 }
 
 double BoneLimit::clearance(const RigidTransform& X_II) const {

@@ -8,15 +8,17 @@
 
 namespace coxa::joint {
 
-/// Watches the distance of femur and hip bone outside the cartilage-covered head.
+/// Watches the distance of femur and hip bone, or labrum, outside the cartilage-covered head.
 class BoneLimit {
  public:
   /// Without bone surfaces there is no limit: every clearance is NaN.
-  explicit BoneLimit(const JointModel& model);
+  explicit BoneLimit(const JointModel& model) : BoneLimit(model, model.hip_bone) {}
+  /// @param fixed  what the femur may meet, rigid with the hip bone; empty: nothing
+  BoneLimit(const JointModel& model, const TriMesh& fixed);
 
-  /// Least distance of the bones at a pose, mm, negative overlap; NaN where they are not near.
+  /// Least distance of the two at a pose, mm, negative overlap; NaN where they are not near.
   double clearance(const RigidTransform& X_II) const;
-  /// Where on the way from `apart` to `together` (which overlaps) the bones first touch.
+  /// Where on the way from `apart` to `together` (which overlaps) the two first touch.
   collide::FirstContact first_touch(const std::function<RigidTransform(double)>& pose_at) const;
 
  private:

@@ -97,12 +97,15 @@ void check_model(const JointModel& model) {
   }
   require(model.hip_bone.empty() == model.femur.empty(),
           "the bony limit needs both bone surfaces, or none");
+  require(model.labrum.empty() || !model.femur.empty(),
+          "contact of the femur with the labrum needs both bone surfaces");
   require(model.bare_bone == BareBone::hip_bone || !model.femur.empty(),
           "acetabular cartilage on bare femur needs both bone surfaces");
   check_ligaments(model);
   if (!model.femur.empty()) {
     require_closed_manifold(model.hip_bone, "hip_bone");
     require_closed_manifold(model.femur, "femur");
+    if (!model.labrum.empty()) require_closed_manifold(model.labrum, "labrum");
   }
 }
 

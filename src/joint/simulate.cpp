@@ -58,6 +58,7 @@ FrameResult without_result(const FrameResult& frame) {
   failed.angles = frame.angles;
   failed.X_II = frame.X_II;
   failed.bone_clearance = frame.bone_clearance;
+  failed.labrum_clearance = frame.labrum_clearance;
   failed.residual = frame.residual;
   failed.iterations = frame.iterations;
   return failed;
@@ -76,6 +77,7 @@ class Simulation {
         system_(model),
         march_(system_, load.mode, options),
         limit_(model),
+        labrum_(model, model.labrum),
         elements_(socket_elements(model)),
         state_{system_.reference(),
                {},
@@ -93,7 +95,7 @@ class Simulation {
   RigidTransform placed(const BonePose& pose) const;
   Vec3 found() const { return state_.x.segment<3>(3 * system_.translation()); }
   void run_frame(FrameResult& frame);
-  void note_limit(const FrameResult& frame, const BonePose& target);
+  BonyLimit first_touch(const BoneLimit& limit, Index frame, const BonePose& target) const;
   void find_sensitivity();
 
   const JointModel& model_;
@@ -103,7 +105,7 @@ class Simulation {
   const Monitor& monitor_;
   HipSystem system_;
   March march_;
-  BoneLimit limit_;
+  BoneLimit limit_, labrum_;
   SocketElements elements_;
   HipState state_;
   BonePose previous_;     // of the frame before, solved or not
@@ -125,16 +127,17 @@ RigidTransform Simulation::placed(const BonePose& pose) const {
   return {pose.R, system_.centre() + pose.shift + found() - pose.R * system_.centre()};
 }
 
-void Simulation::note_limit(const FrameResult& frame, const BonePose& target) {
-  if (result_.bony_limit) return;
+/// Where on the way from the frame before the femur first meets what is watched.
+BonyLimit Simulation::first_touch(const BoneLimit& limit, Index frame,
+                                  const BonePose& target) const {
   const auto pose_at = [&](double s) { return placed(between(previous_, target, s)); };
-  const collide::FirstContact touch = limit_.first_touch(pose_at);
+  const collide::FirstContact touch = limit.first_touch(pose_at);
   const BonePose at = between(previous_, target, touch.parameter);
   const Mat3 R_PF = model_.X_IP.R.transpose() * at.R * model_.X_IF.R;
-  result_.bony_limit = {.frame = frame.frame,
-                        .angles = motion::angles_from_rotation(R_PF, model_.side),
-                        .place = touch.clearance.fixed_point,
-                        .hour = result_.clock.hour(touch.clearance.fixed_point)};
+  return {.frame = frame,
+          .angles = motion::angles_from_rotation(R_PF, model_.side),
+          .place = touch.clearance.fixed_point,
+          .hour = result_.clock.hour(touch.clearance.fixed_point)};
 }
 
 void Simulation::run_frame(FrameResult& frame) {
@@ -143,10 +146,13 @@ void Simulation::run_frame(FrameResult& frame) {
   const BonePose target = pose(frame.frame);
   frame.X_II = placed(target);
   frame.bone_clearance = limit_.clearance(frame.X_II);
+  frame.labrum_clearance = labrum_.clearance(frame.X_II);
+  if (frame.labrum_clearance < 0.0 && !result_.labrum_contact)
+    result_.labrum_contact = first_touch(labrum_, frame.frame, target);
   if (frame.bone_clearance < 0.0) {
     frame.status = FrameStatus::beyond_bony_limit;
     frame.reason = join_text("the bones would overlap by ", -frame.bone_clearance, " mm");
-    note_limit(frame, target);
+    if (!result_.bony_limit) result_.bony_limit = first_touch(limit_, frame.frame, target);
   } else if (!unseated_.empty()) {
     frame.reason = unseated_;
   } else {
@@ -209,6 +215,7 @@ JointResult Simulation::run() {
   result_.clock = elements_.clock;
   result_.load_description = load_.description;
   result_.bare_bone = model_.bare_bone;
+  result_.has_labrum = !model_.labrum.empty();
   for (const Ligament& ligament : model_.ligaments) result_.ligaments.push_back(ligament.name);
   if (load_.mode == LoadMode::force) unseated_ = march_.equilibrium().seat(state_, force(0));
 

@@ -63,11 +63,13 @@ std::string cell(double value) {
 
 /// What only some models have: bare femur in contact, ligaments.
 std::size_t n_optional_cells(const joint::JointResult& result) {
-  return (result.bare_bone == joint::BareBone::both ? 1 : 0) + result.ligaments.size();
+  return (result.has_labrum ? 1 : 0) + (result.bare_bone == joint::BareBone::both ? 1 : 0) +
+         result.ligaments.size();
 }
 
 std::string optional_cells(const joint::FrameResult& f, const joint::JointResult& result) {
   std::string text;
+  if (result.has_labrum) text += cell(f.labrum_clearance);
   if (result.bare_bone == joint::BareBone::both) text += cell(f.balance.force_of_femur.norm());
   for (const double tension : f.ligament_tension) text += cell(tension);
   return text;
@@ -87,6 +89,7 @@ std::string header(const joint::JointResult& result) {
       "reaction_error,elastic_energy_Nmm,least_volume_ratio";
   for (int h = 0; h < 12; ++h) text += join_text(",strain_", h == 0 ? 12 : h, "_oclock");
   for (const char* region : joint::kRegionNames) text += join_text(",strain_", region);
+  if (result.has_labrum) text += ",labrum_clearance_mm";
   if (result.bare_bone == joint::BareBone::both) text += ",force_of_bare_femur_N";
   for (const std::string& ligament : result.ligaments) text += ",tension_" + ligament + "_N";
   return text + ",residual,iterations,seconds,reason\n";

@@ -66,6 +66,7 @@ Record wanted_record(const JointRequest& request) {
                    {"frames", io::sha256_of_path(request.motion / "frames.json")}};
   if (!request.hip_bone.empty()) record.inputs["hip_bone"] = io::sha256_of_path(request.hip_bone);
   if (!request.femur.empty()) record.inputs["femur"] = io::sha256_of_path(request.femur);
+  if (!request.labrum.empty()) record.inputs["labrum"] = io::sha256_of_path(request.labrum);
   return record;
 }
 
@@ -75,12 +76,12 @@ joint::JointOptions joint_options() {
   return options;
 }
 
-void add_limit(const joint::BonyLimit& limit, Record& record) {
-  record.figures["bony_limit_flexion_deg"] = degrees(limit.angles.flexion);
-  record.figures["bony_limit_adduction_deg"] = degrees(limit.angles.adduction);
-  record.figures["bony_limit_internal_rotation_deg"] = degrees(limit.angles.internal_rotation);
-  record.figures["bony_limit_clock_hour"] = limit.hour;
-  record.figures["bony_limit_place_lps_mm"] =
+void add_limit(const std::string& name, const joint::BonyLimit& limit, Record& record) {
+  record.figures[name + "_flexion_deg"] = degrees(limit.angles.flexion);
+  record.figures[name + "_adduction_deg"] = degrees(limit.angles.adduction);
+  record.figures[name + "_internal_rotation_deg"] = degrees(limit.angles.internal_rotation);
+  record.figures[name + "_clock_hour"] = limit.hour;
+  record.figures[name + "_place_lps_mm"] =
       join_text(limit.place.x(), " ", limit.place.y(), " ", limit.place.z());
 }
 
@@ -140,7 +141,8 @@ void add_figures(const joint::JointResult& result, Record& record) {
   }
   record.figures["largest_force_error_percent"] = 100.0 * force_error;
   record.figures["largest_reaction_error"] = reaction_error;
-  if (result.bony_limit) add_limit(*result.bony_limit, record);
+  if (result.bony_limit) add_limit("bony_limit", *result.bony_limit, record);
+  if (result.labrum_contact) add_limit("labrum_contact", *result.labrum_contact, record);
   if (result.sensitivity) add_sensitivity(*result.sensitivity, record);
 }
 
@@ -160,6 +162,7 @@ joint::JointModel read_joint_model(const JointRequest& request, const motion::Bo
   model.femoral_cartilage = io::read_tets(request.femoral_cartilage);
   if (!request.hip_bone.empty()) model.hip_bone = io::read_surface(request.hip_bone);
   if (!request.femur.empty()) model.femur = io::read_surface(request.femur);
+  if (!request.labrum.empty()) model.labrum = io::read_surface(request.labrum);
   model.X_IP = frames.pelvis.X_IB;
   model.X_IF = frames.femur.X_IB;
   model.material.law = request.joint.law == "corotational" ? joint::MaterialLaw::corotational
@@ -205,6 +208,7 @@ JointRequest read_joint_request(const fs::path& path) {
     request.hip_bone = existing(root, "hip_bone");
     request.femur = existing(root, "femur");
   }
+  if (root.has("acetabular_labrum")) request.labrum = existing(root, "acetabular_labrum");
   request.motion = existing(root, "motion");
   request.joint = read_joint_entry(root);
   request.body_mass = root.find<double>("body_mass_kg");
@@ -227,6 +231,8 @@ std::string to_toml(const JointRequest& request, const fs::path& folder) {
     text += join_text("hip_bone = \"", relative(request.hip_bone), "\"\nfemur = \"",
                       relative(request.femur), "\"\n");
   }
+  if (!request.labrum.empty())
+    text += join_text("acetabular_labrum = \"", relative(request.labrum), "\"\n");
   if (request.body_mass) text += join_text("body_mass_kg = ", *request.body_mass, "\n");
   text +=
       join_text("motion = \"", relative(request.motion), "\"\n\n[joint]\nloading = \"",

@@ -1,3 +1,4 @@
+#include <coxa/core/error.h>
 #include <coxa/joint/live.h>
 #include <coxa/joint/simulate.h>
 #include <gtest/gtest.h>
@@ -70,6 +71,50 @@ TEST(BonyLimit, VerticesUnderTheCartilageDoNotCount) {
       simulate(model, test::movement_to({}, 1), passive_examination(model, 200.0),
                {.centre_shift = std::nullopt});
   EXPECT_NE(result.frames[0].status, FrameStatus::beyond_bony_limit);
+}
+
+TEST(LabrumContact, IsFoundWhereTheFemurFirstTouchesItAndStopsNothing) {
+  // a second ball, where 20 degrees of flexion would lay the femur's on it
+  JointModel model = with_bones();
+  const double at = radians(20.0), expected = at - kTouch;
+  model.labrum =
+      test::icosphere(3, kBall, Vec3(0.0, -kReach * std::sin(at), -kReach * std::cos(at)));
+  const auto motion = test::movement_to({radians(24.0), 0.0, 0.0}, 9);
+  const LoadCase load = passive_examination(model, 200.0);
+  const JointResult result = simulate(model, motion, load, {.centre_shift = std::nullopt});
+  EXPECT_TRUE(result.has_labrum);
+  ASSERT_TRUE(result.labrum_contact.has_value());
+  EXPECT_EQ(result.labrum_contact->frame, 4);  // 12 degrees; 9 are before
+  EXPECT_NEAR(degrees(result.labrum_contact->angles.flexion), degrees(expected), 0.2);
+  EXPECT_FALSE(result.bony_limit.has_value());
+  EXPECT_GT(result.frames[3].labrum_clearance, 0.0);
+  EXPECT_LT(result.frames[4].labrum_clearance, 0.0);
+
+  model.labrum = {};
+  const JointResult without = simulate(model, motion, load, {.centre_shift = std::nullopt});
+  EXPECT_FALSE(without.labrum_contact.has_value());
+  EXPECT_TRUE(std::isnan(without.frames[4].labrum_clearance));
+  for (std::size_t k = 0; k < result.frames.size(); ++k) {
+    ASSERT_EQ(result.frames[k].status, FrameStatus::converged) << result.frames[k].reason;
+    EXPECT_EQ(result.frames[k].acetabular_pressure, without.frames[k].acetabular_pressure);
+  }
+}
+TEST(LabrumContact, NeedsAClosedSurfaceAndBones) {
+  const auto fault = [](const JointModel& model) -> std::string {
+    try {
+      check_model(model);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "nothing";
+  };
+  JointModel model = with_bones();
+  model.labrum = test::cap_directions(1.0, 3);
+  EXPECT_NE(fault(model).find("labrum"), std::string::npos) << fault(model);
+  model.labrum = test::icosphere(2, kBall, Vec3::Zero());
+  EXPECT_EQ(fault(model), "nothing");
+  model.hip_bone = model.femur = {};
+  EXPECT_NE(fault(model).find("with the labrum needs both bone surfaces"), std::string::npos);
 }
 
 TEST(BonyLimit, StopsAHipLedByHand) {

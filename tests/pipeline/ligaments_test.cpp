@@ -61,6 +61,8 @@ TEST(Ligaments, HaveAColumnEachInTheSummary) {
     return lines;
   };
   const auto without = lines_of();
+  result.has_labrum = true;
+  result.frames[0].labrum_clearance = 1.5;
   result.bare_bone = joint::BareBone::both;
   result.ligaments = {"iliofemoral_ligament", "loose"};
   result.frames[0].ligament_tension = Vec2(12.5, 0.0);
@@ -68,12 +70,13 @@ TEST(Ligaments, HaveAColumnEachInTheSummary) {
   const auto lines = lines_of();
   ASSERT_EQ(lines.size(), 3U);
   for (const auto& line : lines) EXPECT_EQ(line.size(), lines[0].size());
-  EXPECT_EQ(lines[0].size(), without[0].size() + 3);
+  EXPECT_EQ(lines[0].size(), without[0].size() + 4);
   const auto value = [&](std::size_t line, const std::string& name) {
     const auto& names = lines[0];
     const auto place = std::find(names.begin(), names.end(), name) - names.begin();
     return lines.at(line).at(static_cast<std::size_t>(place));
   };
+  EXPECT_EQ(value(1, "labrum_clearance_mm"), "1.5");
   EXPECT_EQ(value(1, "force_of_bare_femur_N"), "33");
   EXPECT_EQ(value(1, "tension_iliofemoral_ligament_N"), "12.5");
   EXPECT_EQ(value(1, "tension_loose_N"), "0");
@@ -90,10 +93,12 @@ TEST(Ligaments, AreWrittenToTheJointFileAsTheyWereRead) {
   request.hip_bone = small / "segment/hip_bone.vtp";
   request.femur = small / "segment/femur.vtp";
   request.motion = small / "mesh";
+  request.labrum = small / "segment/acetabular_cartilage.vtp";
   request.joint = subject.joint;
   io::write_bytes(small / "joint.toml", to_toml(request, small / ""));
   const JointRequest again = read_joint_request(small / "joint.toml");
   EXPECT_EQ(again.joint.bare_bone, "both");
+  EXPECT_TRUE(fs::equivalent(again.labrum, request.labrum));
   ASSERT_EQ(again.joint.ligaments.size(), 2U);
   for (std::size_t k = 0; k < 2; ++k) {
     const LigamentEntry &a = subject.joint.ligaments[k], &b = again.joint.ligaments[k];
@@ -107,6 +112,7 @@ TEST(Ligaments, AreWrittenToTheJointFileAsTheyWereRead) {
   motion::BoneFrames frames;
   const joint::JointModel model = read_joint_model(again, frames);
   EXPECT_EQ(model.bare_bone, joint::BareBone::both);
+  EXPECT_FALSE(model.labrum.empty());
   // without a slack length as long as in the image pose: around the head, longer than straight
   EXPECT_EQ(model.ligaments[0].slack_length,
             joint::image_length(model.ligaments[0], frames.femur.X_IB.p));

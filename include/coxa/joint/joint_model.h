@@ -37,6 +37,7 @@ struct JointModel {
   TetMesh acetabular_cartilage;  ///< boundary facets tagged bone_side, articular_side, rim
   TetMesh femoral_cartilage;     ///< likewise
   TriMesh hip_bone, femur;       ///< rigid, closed; both empty: the bony limit is not looked for
+  TriMesh labrum;  ///< closed, rigid with the hip bone; empty: contact with it is not looked for
   /// ISB frames of pelvis and femur in the image pose (x anterior, y superior, z right), both with
   /// their origin at the joint centre.
   RigidTransform X_IP, X_IF;

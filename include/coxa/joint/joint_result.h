@@ -90,6 +90,7 @@ struct FrameResult {
       Vec3::Zero();  ///< mm, image axes: found beside the rotation about the joint centre
   double bone_clearance =
       kNaN;  ///< mm, least distance of the bones, negative overlap; NaN where not near
+  double labrum_clearance = kNaN;  ///< likewise of femur and labrum
 
   // of converged frames only, else empty
   Points acetabular_displacement;  ///< N×3, mm
@@ -108,11 +109,11 @@ struct FrameResult {
   double seconds = 0.0;
 };
 
-/// First meeting of the bones outside the cartilage-covered head.
+/// First meeting of the femur, outside its cartilage-covered head, with the hip bone or the labrum.
 struct BonyLimit {
   Index frame = 0;           ///< first frame beyond
   motion::HipAngles angles;  ///< where the bones first touch, between that frame and the one before
-  Vec3 place = Vec3::Zero();  ///< mm, image frame, on the hip bone
+  Vec3 place = Vec3::Zero();  ///< mm, image frame, on the hip bone or labrum
   double hour = 0.0;          ///< on the clock face
 };
 
@@ -131,6 +132,10 @@ struct JointResult {
   ClockFace clock;
   double articular_area = 0.0;  ///< mm², acetabular, undeformed
   std::optional<BonyLimit> bony_limit;
+  /// Where the femur first touches the labrum; frames beyond are solved all the same, as if it were
+  /// not there.
+  std::optional<BonyLimit> labrum_contact;
+  bool has_labrum = false;  ///< the model
   std::optional<CentreSensitivity> sensitivity;
   std::string load_description;
   BareBone bare_bone = BareBone::hip_bone;  ///< of the model

@@ -7,9 +7,9 @@
 
 namespace coxa::joint {
 
-/// Options of a hip led by hand: shorter steps and fewer rounds than a simulation's. Each step looks
-/// for pairs once and leaves up to a fiftieth of the joint force to the next one; what that costs is
-/// what `LiveHip::settle` finds.
+/// Options of a hip led by hand: shorter steps and fewer rounds than a simulation's. Each step
+/// looks for pairs once and leaves up to a fiftieth of the joint force to the next one; what that
+/// costs is what `LiveHip::settle` finds.
 JointOptions live_options();
 
 /// A hip that follows a hand: each call goes one step from the state the last one left.

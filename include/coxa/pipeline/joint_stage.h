@@ -19,6 +19,7 @@ struct JointRequest {
   std::filesystem::path motion;           ///< folder of a motion stage
   JointEntry joint;
   std::optional<double> body_mass = std::nullopt;  ///< kg, for a load in percent of body weight
+  std::filesystem::path labrum = {};  ///< surface; empty: contact with it is not looked for
 };
 
 /// @throws Error bad_input for a missing or unknown key, a value out of range, or a file that does
