@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace coxa {
 namespace {
@@ -209,7 +210,7 @@ void update_with_walls(const TriMesh& loose, double half, const Grid& grid,
 }
 
 // even triangles of the length asked for or less; where they fold at sharp rims, about as many that
-// follow the shape, or else those of the grid
+// follow the shape, or more where those fold
 TriMesh fewer_triangles(const TriMesh& raw, double target_edge) {
   for (const double share : {1.0, 0.6}) {
     TriMesh even = remesh(raw, {.target_edge = share * target_edge});
@@ -217,13 +218,15 @@ TriMesh fewer_triangles(const TriMesh& raw, double target_edge) {
   }
   const double of_triangle = 0.25 * std::sqrt(3.0) * target_edge * target_edge;
   const double wanted = triangle_areas(raw).sum() / of_triangle;
-  for (const double share : {2.0, 4.0, 8.0}) {
-    const auto n = static_cast<Index>(share * wanted);
-    if (n >= raw.n_triangles()) break;
-    const TriMesh fewer = decimate(raw, {.n_triangles = std::max<Index>(n, 4)});
-    if (validate(fewer).valid()) return fewer;
+  TriMesh fewest = raw;
+  for (const double share : {8.0, 4.0, 2.0}) {
+    const auto n = std::max<Index>(static_cast<Index>(share * wanted), 4);
+    if (n >= fewest.n_triangles()) continue;
+    TriMesh fewer = decimate(fewest, {.n_triangles = n});
+    if (!validate(fewer).valid()) break;
+    fewest = std::move(fewer);
   }
-  return raw;
+  return fewest;
 }
 
 // how far the new surface is from the old one, and what of the old one it leaves out

@@ -245,6 +245,8 @@ Index cover_far_places(TetGrid& grid, const TriMesh& surface, const CoverOptions
     if (place.distance > options.limit) far.push_back(place);
   std::stable_sort(far.begin(), far.end(),
                    [](const Place& a, const Place& b) { return a.distance > b.distance; });
+  // more of them mean that the elements are too few: one here and there would not help
+  far.resize(std::min(far.size(), options.most));
   Cover cover(grid, std::move(places));
   Index drawn = 0;
   std::ptrdiff_t room = options.room;

@@ -14,6 +14,7 @@ struct CoverOptions {
   double limit = 0.1;  ///< mm, >= 0: places of the surface farther than this from the boundary
   double worst = 2.5;  ///< shape energy, >= 1: allowed for elements around a node that is moved,
                        ///< or as much as there was
+  std::size_t most = 4000;  ///< places that are tried, the farthest ones
   std::ptrdiff_t room = 0;  ///< elements that may be added by splitting edges of the boundary
 };
 

@@ -88,6 +88,7 @@ void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface,
   const int rounds = options.improvement_rounds;
   constexpr int kMeanRounds = 4;  // first the average, then the worst
   constexpr int kCoverRounds = 3;
+  constexpr std::size_t kMostCovered = 1500;  // where more are missed, finer cubes come next
   const auto flip = [&](double below) {
     if (connections == Connections::may_change)
       flip_poor(grid, guide,
@@ -105,7 +106,9 @@ void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface,
                ? options.max_tets.value_or(kMostFinerTets) - grid.n_living()
                : 0;
   };
-  for (int k = 0; k < kCoverRounds && cover_far_places(grid, surface, {.room = room()}) > 0; ++k) {
+  for (int k = 0; k < kCoverRounds &&
+                  cover_far_places(grid, surface, {.most = kMostCovered, .room = room()}) > 0;
+       ++k) {
     flip(0.5);
     update_positions(grid, guide, 3.0);
   }
@@ -116,7 +119,7 @@ void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface,
   if (rounds > 0) raise_freely(grid, guide);
   draw_back(grid, guide);
   for (int k = 0; rounds > 0 && k < kCoverRounds; ++k) {
-    if (cover_far_places(grid, surface, {.room = room()}) == 0) break;
+    if (cover_far_places(grid, surface, {.most = kMostCovered, .room = room()}) == 0) break;
     flip(0.35);
     raise_worst(grid, guide);
   }
