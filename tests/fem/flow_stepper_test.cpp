@@ -153,6 +153,25 @@ TEST(FlowStepper, IsOfFirstOrderInTime) {
   const double half_error = consolidation(10, 0.1, 40) - fine;
   EXPECT_NEAR(coarse_error / half_error, 2.0, 0.35);
 }
+TEST(FlowStepper, GivesForcesOfRateTheMeanVelocityOfTheStep) {
+  // nothing but damping: the body goes at force over damping, and keeps its shape and its fluid
+  const TetMesh mesh = block_of(10, 1, 1);
+  PoreFluid fluid(mesh, {.reference = 1.0});
+  const Index n = mesh.n_vertices();
+  VecX mass = VecX::Ones(fluid.n_particles()), pull = VecX::Zero(fluid.reference().size());
+  for (Index i = 0; i < n; ++i) pull[3 * i] = 4.0;
+  const dynamics::MassDamping damping(mass, 5.0);
+  const dynamics::ConstantForce force(pull);
+  dynamics::Constraints constraints;
+  fluid.add_unused(constraints);
+  fluid.add_drained({0}, constraints);
+  FlowStepper stepper(fluid, {&damping, &force}, fluid.reference());
+  VecX x = fluid.reference();
+  ASSERT_TRUE(stepper.update_step(x, constraints, {.time_step = 0.5}).converged);
+  ASSERT_TRUE(stepper.update_step(x, constraints, {.time_step = 0.25}).converged);
+  for (Index i = 0; i < n; ++i) EXPECT_NEAR(x[3 * i] - mesh.points(i, 0), 0.75 * 4.0 / 5.0, 1e-7);
+  EXPECT_LE(fluid.pressure(x).norm(), 1e-7);
+}
 TEST(FlowStepper, IsBitIdenticalForOneAndEightThreads) {
   const auto all = [] { return Pressed(10, 0.7, 1.0, 10.0, true).x; };
   EXPECT_EQ(with_threads(1, all), with_threads(8, all));
