@@ -54,7 +54,7 @@ async function live(page: Page, seconds: number): Promise<void> {
     return all;
   }, seconds);
   console.log(`live: ${found.length} answers in ${seconds} s, ${(found.length / seconds).toFixed(1)} a second; ${found[0]?.["tets"]} tetrahedra, ${((found[0]?.["bytes"] ?? 0) / 1000).toFixed(0)} kB an answer`);
-  for (const key of ["solver", "packing", "transfer", "javascript", "drawing"]) console.log(`  ${key}, ms: ${text(found.map((times) => times[key] ?? NaN))}`);
+  for (const key of ["solver", "packing", "transfer", "waiting", "javascript", "drawing"]) console.log(`  ${key}, ms: ${text(found.map((times) => times[key] ?? NaN))}`);
 }
 
 /** Slices of the image scrolled through, and what the memory is then. */

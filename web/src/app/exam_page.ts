@@ -1,8 +1,8 @@
 import { api } from "../core/api";
-import type { Bundle } from "../core/bundle";
 import { button, labelled, make, range, say } from "../core/dom";
 import { shortNumber } from "../core/numbers";
-import { LiveClient, type Answer, type Pose } from "../live/live_client";
+import type { ToWorker } from "../live/connection";
+import type { Answer, Pose } from "../live/live_client";
 import { Recorder } from "../live/recorder";
 import type { HipModel } from "../scene/hip_model";
 import type { Viewer } from "../scene/viewer";
@@ -22,7 +22,8 @@ const kTellEvery = 150; // ms: nobody reads numbers faster
 export class ExamPage {
   readonly panel = make("div");
   readonly side = make("div");
-  readonly client: LiveClient;
+  private field = "";
+  private waiting: Answer | null = null; // to be drawn
   private wanted: Pose = { ...kRest };
   private readonly sliders = new Map<keyof Pose, { input: HTMLInputElement; shown: HTMLOutputElement }>();
   private readonly figures = make("tbody");
@@ -45,10 +46,9 @@ export class ExamPage {
     private readonly colours: FieldChoice,
     private readonly probe: Probe,
     start: Pose | undefined, // at which the hip was imaged: where the server's hip begins
-    send: (message: Record<string, unknown>) => boolean,
+    private readonly ask: (message: ToWorker) => void,
   ) {
     this.wanted = { ...(start ?? kRest) };
-    this.client = new LiveClient(send, (answer) => this.show(answer));
     this.panel.append(make("h2", {}, "Lead the leg"), ...kAxes.map((axis) => this.slider(axis)), this.buttons(), this.dragSwitch(), ...this.recording());
     const table = (caption: string, body: HTMLElement): HTMLElement => make("table", {}, make("caption", {}, caption), body);
     this.side.append(make("h2", {}, "Live"), this.verdict, table("At this pose", this.figures), this.exactness, table("Times [ms]", this.times));
@@ -58,26 +58,44 @@ export class ExamPage {
 
   enter(): void {
     this.viewer.onDrawn = (ms) => (this.drawMs = ms);
-    this.client.field = this.colours.field ?? "contact_pressure";
+    this.askForField();
     this.leadTo(this.wanted);
   }
   leave(): void {
     this.viewer.onDrawn = null;
     this.stopReplay();
-    this.client.leave();
+    this.ask({ kind: "leave" });
   }
 
-  /** Another field is looked at: the next answers carry it. */
+  /** Another field may be looked at: the next answers carry it. */
   fieldChanged(): void {
-    this.client.field = this.colours.field ?? "contact_pressure";
-    this.client.again();
+    if (this.askForField()) this.ask({ kind: "again" });
   }
 
-  receive(bundle: Bundle): void {
-    this.client.receive(bundle);
+  private askForField(): boolean {
+    const field = this.colours.field ?? "contact_pressure";
+    const changed = field !== this.field;
+    this.field = field;
+    if (changed) this.ask({ kind: "field", field });
+    return changed;
   }
+
+  /** Drawn when the page comes to it; of several that have come meanwhile the last. */
+  receive(answer: Answer): void {
+    this.answers += 1;
+    this.arrivals = [...this.arrivals, answer.arrivedAt].slice(-20);
+    if (answer.type === "step" && answer.status === "converged") this.recorder.add(answer.pose, answer.arrivedAt / 1000);
+    if (!this.waiting) setTimeout(() => this.showWaiting());
+    this.waiting = answer;
+  }
+  private showWaiting(): void {
+    const answer = this.waiting;
+    this.waiting = null;
+    if (answer) this.show(answer);
+  }
+
   fail(number: number, text: string): void {
-    this.client.fail(number);
+    this.ask({ kind: "fail", number });
     this.verdict.textContent = text;
     say(text, "error");
   }
@@ -91,7 +109,7 @@ export class ExamPage {
       slider.input.value = String(this.wanted[key]);
       slider.shown.textContent = `${this.wanted[key].toFixed(1)}°`;
     }
-    this.client.moveTo(this.wanted);
+    this.ask({ kind: "move", pose: this.wanted });
   }
 
   private slider({ key, label, min, max }: (typeof kAxes)[number]): HTMLElement {
@@ -199,30 +217,28 @@ export class ExamPage {
 
   private show(answer: Answer): void {
     const start = performance.now();
-    this.answers += 1;
+    const waiting = Math.max(0, performance.timeOrigin + start - answer.arrivedAt);
     if (answer.status === "converged") {
       this.hip.apply(answer.bundle);
       this.colours.apply();
       this.probe.refresh();
     }
-    if (answer.type === "step" && answer.status === "converged") this.recorder.add(answer.pose, start / 1000);
     if (this.recorder.recording) this.describeRecord();
     const javascript = performance.now() - start;
-    this.arrivals = [...this.arrivals, start].slice(-20);
-    this.noteTimes(answer, javascript);
+    this.noteTimes(answer, javascript, waiting);
     const last = answer.type === "settled" || answer.arrived || answer.status !== "converged";
     if (!last && start - this.told < kTellEvery) return;
     this.told = start;
     this.tell(answer);
   }
 
-  private noteTimes(answer: Answer, javascript: number): void {
+  private noteTimes(answer: Answer, javascript: number, waiting: number): void {
     const at = (key: string): number => Number(answer.bundle.meta[key] ?? NaN);
     const [solver, packing] = [at("solver_ms"), at("packing_ms")];
     const transfer = Math.max(0, answer.roundTripMs - solver - packing);
     const span = (this.arrivals.at(-1) ?? 0) - (this.arrivals[0] ?? 0);
     const rate = this.arrivals.length > 1 ? (1000 * (this.arrivals.length - 1)) / span : NaN;
-    this.lastTimes = { solver, packing, transfer, javascript, drawing: this.drawMs, rate, tets: at("tets"), bytes: answer.bundle.bytes, answers: this.answers };
+    this.lastTimes = { solver, packing, transfer, waiting, javascript, drawing: this.drawMs, rate, tets: at("tets"), bytes: answer.bundle.bytes, answers: this.answers };
     this.times.dataset["times"] = JSON.stringify(this.lastTimes);
   }
 
@@ -252,11 +268,12 @@ export class ExamPage {
     }
     if (answer.type === "settled" && answer.status === "converged") this.compare(number);
     else if (answer.type === "step") this.exactness.textContent = "Led by hand, to a loose tolerance; at rest it is compared with the full solution.";
-    const { solver = NaN, packing = NaN, transfer = NaN, javascript = NaN, rate = NaN, tets = NaN, bytes = NaN } = this.lastTimes;
+    const { solver = NaN, packing = NaN, transfer = NaN, waiting = NaN, javascript = NaN, rate = NaN, tets = NaN, bytes = NaN } = this.lastTimes;
     this.rows(this.times, [
       ["Solver", solver, ""],
       ["Fields and packing", packing, ""],
-      ["Transfer and waiting", transfer, ""],
+      ["Transfer", transfer, ""],
+      ["Waiting for the page", waiting, ""],
       ["JavaScript", javascript, ""],
       [this.viewer.software ? "Drawing (no graphics card)" : "Drawing", this.drawMs, ""],
       ["Updates a second", rate, ""],

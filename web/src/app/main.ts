@@ -1,10 +1,9 @@
 import "./style.css";
 import { api } from "../core/api";
 import { ComparePage } from "../compare/compare_page";
-import { decodeBundle } from "../core/bundle";
 import type { Case } from "../core/case";
 import { byId, make, say } from "../core/dom";
-import { Socket } from "../core/socket";
+import { Connection } from "../live/connection";
 import { FrameStore } from "../scene/frame_store";
 import { HipModel } from "../scene/hip_model";
 import { Viewer } from "../scene/viewer";
@@ -36,24 +35,24 @@ class App {
   private sceneControls: SceneControls | null = null;
   private sliceControls: SliceControls | null = null;
   private volume: Promise<Volume> | null = null;
-  private readonly socket: Socket;
+  private readonly server: Connection;
   private readonly tabs = new Map<PageName, HTMLButtonElement>();
 
   constructor(private readonly info: Case) {
-    const send = (message: Record<string, unknown>): boolean => this.socket.send(message);
+    const send = (message: Record<string, unknown>): boolean => this.server.send(message);
     this.frames = new FrameStore(info.summary?.rows.length ?? 0);
     this.colours = new FieldChoice(info, this.hip, () => this.frames.loaded(), () => this.recolour());
     this.probe = new Probe(this.viewer, this.hip, info);
     this.result = new ResultPage(info, this.viewer, this.hip, this.frames, this.colours, this.probe);
-    this.exam = new ExamPage(this.viewer, this.hip, this.colours, this.probe, info.image_pose, send);
+    this.exam = new ExamPage(this.viewer, this.hip, this.colours, this.probe, info.image_pose, (message) => this.server.post(message));
     this.image = new ImagePage(info, this.viewer, this.hip, () => this.readVolume(), send);
     this.image.onWindow = (window) => this.sliceControls?.setWindow(window);
     this.compare = new ComparePage(info, this.viewer, this.hip, this.frames, this.colours);
     this.image.jobs.onDone = () => location.reload();
-    this.socket = new Socket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`, {
+    this.server = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`, {
       state: (state) => this.connection(state === "open"),
       text: (message) => this.hear(message),
-      binary: (message) => this.exam.receive(decodeBundle(message)),
+      answer: (answer) => this.exam.receive(answer),
     });
   }
 
@@ -164,14 +163,14 @@ class App {
   private recolour(): void {
     if (this.page === "result") this.result.refresh();
     else this.colours.apply();
-    if (this.page === "exam" && this.exam.client.field !== (this.colours.field ?? "contact_pressure")) this.exam.fieldChanged();
+    if (this.page === "exam") this.exam.fieldChanged();
   }
 
   private connection(open: boolean): void {
     const line = byId("connection");
     line.dataset["state"] = open ? "open" : "lost";
     line.textContent = open ? "connected" : "connection lost, trying again …";
-    if (open && this.page === "exam") this.exam.client.reconnect();
+    if (open && this.page === "exam") this.server.post({ kind: "reconnect" });
   }
 
   private hear(message: Record<string, unknown>): void {
@@ -195,7 +194,7 @@ class App {
         this.exam.fail(Number(message["number"]), String(message["text"]));
         break;
       case "live_broken_off":
-        this.exam.client.fail(Number(message["number"]));
+        this.server.post({ kind: "fail", number: Number(message["number"]) });
         break;
       case "error":
         say(String(message["text"]), "error");

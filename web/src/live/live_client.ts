@@ -14,6 +14,7 @@ export interface Answer {
   reason: string;
   pose: Pose;
   roundTripMs: number;
+  arrivedAt: number; // ms since 1970
   bundle: Bundle;
 }
 
@@ -72,6 +73,7 @@ export class LiveClient {
       ...meta,
       pose: { flexion_deg: meta.flexion_deg, adduction_deg: meta.adduction_deg, internal_rotation_deg: meta.internal_rotation_deg },
       roundTripMs: this.now() - question.at,
+      arrivedAt: performance.timeOrigin + performance.now(),
       bundle,
     });
     return true;
