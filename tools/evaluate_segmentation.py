@@ -6,6 +6,8 @@ usage: evaluate_segmentation.py --coxa build/release/coxa [--shared ../shared] [
 Subjects are taken out in groups (GROUPS), one atlas per group; every atlas is free of all libhip hip bones, so that the
 hip-bone column is of a bone whose like the atlas has not seen (all phantoms' hip bones are warps of one bone: a weak test).
 Landmarks come from the truth surfaces by the rules below, with normal noise of --error mm (standard error of the distance).
+The phantoms thigh_* show other people's hips and thighs (thigh_phantoms.py): each has an atlas free of its own body, and
+Visible Human bones are judged by surface_distance.py --image, those of label maps by label_distance.py.
 Atlases are kept in DIR and reused: delete it to start afresh; --judge segments nothing and judges the results there.  Distances
 by surface_distance.py --image; of each cartilage also its sides, its thickness and where it is thick its overlap (cartilage_figures.py).
 """
@@ -19,6 +21,7 @@ import time
 import numpy as np
 
 import cartilage_figures
+import thigh_phantoms
 from libhip import surface_path
 
 GROUPS = [("m2", "m4"), ("m5", "m6", "m8"), ("m1", "m3", "m10", "m11")]
@@ -30,10 +33,22 @@ def truth_path(shared, subject, side, structure):
     return surface_path(shared / "data/libhip" / subject / side, structure)
 
 
-def landmarks_of(shared, subject, side, surfaces):
+def truth_points(shared, name, surfaces):
+    if thigh_phantoms.is_thigh(name):
+        return thigh_phantoms.truth_points(shared, name, surfaces)
+    subject, side = subject_and_side(name)
+    return {s: surfaces.arrays(surfaces.read(str(truth_path(shared, subject, side, s))))[0] for s in STRUCTURES}
+
+
+def subject_and_side(name):
+    return thigh_phantoms.subject_and_side(name) if thigh_phantoms.is_thigh(name) else name.split("_")[:2]
+
+
+def landmarks_of(shared, name, surfaces):
     """Landmarks of the truth, LPS mm: extreme points in the frame of a right hip with the head's centre as origin."""
+    side = subject_and_side(name)[1]
     mirror = np.array([-1.0 if side == "left" else 1.0, 1.0, 1.0])
-    points = {s: surfaces.arrays(surfaces.read(str(truth_path(shared, subject, side, s))))[0] * mirror for s in STRUCTURES}
+    points = {s: p * mirror for s, p in truth_points(shared, name, surfaces).items()}
     cartilage = points["femoral_cartilage"]
     centre = np.linalg.lstsq(np.c_[2 * cartilage, np.ones(len(cartilage))], (cartilage ** 2).sum(1), rcond=None)[0][:3]
     femur, bone, socket = (points[s] - centre for s in ("femur", "hip_bone", "acetabular_cartilage"))
@@ -65,36 +80,42 @@ def run(command):
     return done
 
 
-def atlas_without(group, options):
-    """The atlas free of these subjects and of every libhip hip bone, built where it is not there yet."""
+def atlas_without(name, options):
+    """The atlas free of the phantom's subject, and of every libhip hip bone where the phantom's is one; built where it is not there yet."""
+    subject = subject_and_side(name)[0]
+    thigh = thigh_phantoms.is_thigh(name)
+    group = (subject,) if thigh else next(g for g in GROUPS if subject in g)
     atlas = options.work / f"atlas_without_{'_'.join(group)}.coxa-atlas"
     if not atlas.exists():
         exclude = [a for s in group for a in ("--exclude", s)]
-        run([options.coxa, "atlas", "build", "--data", options.shared / "data", *exclude,
-             "--exclude-structure", "libhip:hip_bone", "--out", atlas])
+        warped = [] if thigh else ["--exclude-structure", "libhip:hip_bone"]
+        run([options.coxa, "atlas", "build", "--data", options.shared / "data", *exclude, *warped, "--out", atlas])
     return atlas
 
 
 def segmented(image, name, options, evaluator):
     """Segments one phantom into DIR/name.  Returns whether that went well."""
-    subject, side = name.split("_")[:2]
-    atlas = atlas_without(next(g for g in GROUPS if subject in g), options)
+    side = subject_and_side(name)[1]
+    atlas = atlas_without(name, options)
     rng = np.random.default_rng([options.seed, *name.encode()])
-    marks = landmarks_of(options.shared, subject, side, evaluator)
+    marks = landmarks_of(options.shared, name, evaluator)
     table = options.work / f"{name}_landmarks.csv"
     rows = [f"{k}_{side}," + ",".join(f"{x:.3f}" for x in p + rng.normal(0, options.error / np.sqrt(3), 3)) for k, p in marks.items()]
     table.write_text("name,x,y,z\n" + "\n".join(rows) + "\n")
     done = run([options.coxa, "segment", "--image", image, "--side", side, "--landmarks", table, "--atlas", atlas,
-                "--out", options.work / name])
+                "--structures", getattr(options, "structures", "bones,cartilage"), "--out", options.work / name])
     return done.returncode == 0
 
 
 def judge(image, name, options, evaluator):
     """The distances of all structures in one line's cells, and a line on each cartilage."""
     cells, lines = [], []
+    if thigh_phantoms.is_thigh(name):
+        bones = thigh_phantoms.judge_bones(options.work, options.shared, name, image, evaluator)
+        return [bones.get(s, "") for s in STRUCTURES], lines
     for structure in STRUCTURES:
         result = options.work / name / f"{structure}.ply"
-        truth = truth_path(options.shared, *name.split("_")[:2], structure)
+        truth = truth_path(options.shared, *subject_and_side(name), structure)
         if not result.exists():
             cells.append("failed")
             continue
@@ -124,9 +145,9 @@ def main():
     options.work.mkdir(parents=True, exist_ok=True)
     wanted = [w for w in options.only.split(",") if w]
     print(f"{'phantom':22s} " + " ".join(f"{s:>26s}" for s in STRUCTURES) + "   seconds  (assd / hd95 / bias, mm)")
-    for image in sorted((options.shared / "data/phantom").glob("m*.nii.gz")):
+    for image in sorted((options.shared / "data/phantom").glob("*.nii.gz")):
         name = image.name[: -len(".nii.gz")]
-        if wanted and name not in wanted:
+        if name.endswith("_labels") or (wanted and name not in wanted):
             continue
         start = time.time()
         good = options.judge or segmented(image, name, options, evaluator)
