@@ -52,6 +52,11 @@ def label_surfaces(shared, work):
     for path in sorted((shared / "data/labels").rglob("*.nii.gz")):
         reader = vtk.vtkNIFTIImageReader()
         reader.SetFileName(str(path))
+        reader.Update()
+        # a label at the border of the image gets a closed surface
+        padded = vtk.vtkImageConstantPad()
+        padded.SetInputConnection(reader.GetOutputPort())
+        padded.SetOutputWholeExtent([e + step for e, step in zip(reader.GetOutput().GetExtent(), (-1, 1) * 3)])
         for label in range(1, 24):
             stages = [vtk.vtkDiscreteMarchingCubes(), vtk.vtkPolyDataConnectivityFilter(), vtk.vtkWindowedSincPolyDataFilter(),
                       vtk.vtkPLYWriter()]
@@ -60,7 +65,7 @@ def label_surfaces(shared, work):
             stages[2].SetNumberOfIterations(30)
             stages[2].SetPassBand(0.02)
             stages[2].NormalizeCoordinatesOn()
-            for before, after in zip([reader] + stages, stages):
+            for before, after in zip([padded] + stages, stages):
                 after.SetInputConnection(before.GetOutputPort())
             surfaces.append(work / f"{path.name.split('.')[0]}_{label}.ply")
             stages[3].SetFileName(str(surfaces[-1]))

@@ -16,6 +16,7 @@
 #include <coxa/pipeline/segment_stage.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -43,6 +44,40 @@ bool has_second_body(const TriMesh& surface) {
   return (areas.array() > kSecondBody * areas.maxCoeff()).count() > 1;
 }
 
+/// A closed surface and the triangles of another, each both ways, so that they enclose nothing.
+TriMesh with_loose_triangles(const TriMesh& closed, const TriMesh& loose) {
+  TriMesh all;
+  all.points.resize(closed.n_vertices() + loose.n_vertices(), 3);
+  all.points << closed.points, loose.points;
+  const Triangles there = loose.triangles.array() + closed.n_vertices();
+  all.triangles.resize(closed.n_triangles() + 2 * loose.n_triangles(), 3);
+  all.triangles << closed.triangles, there, there.rowwise().reverse();
+  return all;
+}
+
+/// The spacing wanted, or as much more as keeps the samples of a large body few enough.
+double grid_spacing(const TriMesh& surface, double wanted) {
+  constexpr double kMostSamples = 6e7;
+  const Bounds box = bounds(surface.points);
+  return std::max(wanted, std::cbrt((box.high - box.low).prod() / kMostSamples));
+}
+
+/// A new surface around what the old one encloses; thin parts that would be lost become walls.
+TriMesh made_anew(const TriMesh& surface, const std::string& why,
+                  std::vector<std::string>& changes) {
+  Rebuilt rebuilt = rebuild(
+      surface, {.spacing = grid_spacing(surface, kRebuildSpacing), .target_edge = kRebuildEdge});
+  const double fine = grid_spacing(surface, kThinSpacing), half = kThickening / kThinSpacing * fine;
+  if (rebuilt.largest_loss > kLargestLoss)
+    rebuilt = rebuild(surface, {.spacing = fine, .thickening = half, .target_edge = kThinEdge});
+  if (rebuilt.thickened_area > 0.0)
+    changes.push_back(join_text("parts too thin to be filled became walls of ", 2.0 * half, " mm"));
+  changes.push_back(join_text(
+      "made anew around what it encloses since ", why, "; at most ", rebuilt.largest_move,
+      " mm from where it was; what is left out reached ", rebuilt.largest_loss, " mm farther"));
+  return rebuilt.mesh;
+}
+
 /// Places where a closed surface cuts itself are evened out first, which keeps its triangles; the
 /// rest is repaired.
 TriMesh made_valid(TriMesh surface, const ValidityReport& before, const std::string& name,
@@ -57,32 +92,28 @@ TriMesh made_valid(TriMesh surface, const ValidityReport& before, const std::str
       surface.points = points;
     }
   }
+  std::optional<Repaired> repaired;
   std::string refusal;
   try {
-    const Repaired repaired = repair(surface);
-    for (const std::string& line : repaired.report.lines()) changes.push_back(line);
-    return repaired.mesh;
+    repaired = repair(surface);
   } catch (const Error& refused) {
     if (has_second_body(surface)) fail(refused.code(), name, ": ", refused.what());
     refusal = refused.what();
   }
-  try {
-    Rebuilt rebuilt = rebuild(surface, {.spacing = kRebuildSpacing, .target_edge = kRebuildEdge});
-    const bool thickened = rebuilt.largest_loss > kLargestLoss;
-    if (thickened)
-      rebuilt = rebuild(
-          surface, {.spacing = kThinSpacing, .thickening = kThickening, .target_edge = kThinEdge});
-    if (rebuilt.thickened_area > 0.0)
-      changes.push_back(join_text(rebuilt.thickened_area,
-                                  " mm² of it, too thin to be filled, became walls of ",
-                                  2.0 * kThickening, " mm"));
-    changes.push_back(join_text(
-        "made anew around what it encloses since ", refusal, "; at most ", rebuilt.largest_move,
-        " mm from where it was; what is left out reached ", rebuilt.largest_loss, " mm farther"));
-    return rebuilt.mesh;
-  } catch (const Error& error) {
-    fail(error.code(), name, ": ", refusal, "; ", error.what());
+  if (repaired && repaired->report.dropped_reach > kLargestLoss) {
+    // parts without volume that reach out are lost by a repair
+    refusal = join_text("parts without volume reach ", repaired->report.dropped_reach, " mm out");
+    surface = with_loose_triangles(repaired->mesh, surface);
   }
+  if (!refusal.empty()) {
+    try {
+      return made_anew(surface, refusal, changes);
+    } catch (const Error& error) {
+      if (!repaired) fail(error.code(), name, ": ", refusal, "; ", error.what());
+    }
+  }
+  for (const std::string& line : repaired->report.lines()) changes.push_back(line);
+  return repaired->mesh;
 }
 
 /// The surface made valid, with what was changed as warnings.
