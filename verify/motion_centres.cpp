@@ -127,20 +127,16 @@ void print_row(const char* name, const Eigen::Array<double, kViews, 1>& values) 
   std::printf("\n");
 }
 
-}  // namespace
-
-void print_centres(const fs::path& shared) {
-  std::vector<Hip> hips = read_hips(shared);
-  print_definitions(hips);
-  std::printf(
-      "\ncentre of the head moves by, mm, with 0.5 mm of noise: sphere / completed\n| hip |");
+// rows of all hips, each with the heads of `others` that are not the same person's
+void print_moves(const std::vector<Hip>& hips, const std::vector<Hip>& others) {
+  std::printf("| hip |");
   for (const char* name : kViewNames) std::printf(" %s |", name);
   std::printf("\n|---|---|---|---|---|---|---|\n");
   const Moves zero{Eigen::Array<double, kViews, 1>::Zero(), Eigen::Array<double, kViews, 1>::Zero(),
                    Eigen::Array<double, kViews, 1>::Zero()};
   Moves sum = zero, largest = zero;
   for (const Hip& hip : hips) {
-    const Moves moves = moves_of(hip, heads_without(hips, hip.person));
+    const Moves moves = moves_of(hip, heads_without(others, hip.person));
     std::printf("| %s |", hip.name.c_str());
     for (Index k = 0; k < kViews; ++k)
       std::printf(" %.2f / %.2f |", moves.plain[k], moves.completed[k]);
@@ -158,6 +154,31 @@ void print_centres(const fs::path& shared) {
   print_row("largest, sphere", largest.plain);
   print_row("largest, completed", largest.completed);
   print_row("share of coordinates inside the interval", sum.inside / n);
+}
+
+// heads of other people, from another source: no part of what heads are learned from
+std::vector<Hip> read_visible_human(const fs::path& shared) {
+  std::vector<Hip> hips;
+  for (const char* body : {"vhf", "vhm"}) {
+    for (const auto& [word, side] : kSides) {
+      Hip hip{-1, std::string(body) + " " + word, side, {}, {}};
+      hip.surfaces["femur"] = read_hip(shared / "data/visible_human" / body / word).at("femur");
+      hip.centres = motion::find_joint_centre(hip.surfaces, {.congruency_samples = 0});
+      hips.push_back(std::move(hip));
+    }
+  }
+  return hips;
+}
+
+}  // namespace
+
+void print_centres(const fs::path& shared) {
+  std::vector<Hip> hips = read_hips(shared);
+  print_definitions(hips);
+  std::printf("\ncentre of the head moves by, mm, with 0.5 mm of noise: sphere / completed\n");
+  print_moves(hips, hips);
+  std::printf("\nthe same, other bodies\n");
+  print_moves(read_visible_human(shared), hips);
 }
 
 void learn_heads(const fs::path& shared, const fs::path& out) {

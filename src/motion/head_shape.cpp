@@ -11,6 +11,10 @@
 namespace coxa::motion {
 namespace {
 
+// Part of the examples' mean that is believed of other people: heads of other sources show less of
+// it than those it was learned from do of each other's.
+constexpr double kBelieved = 0.5;
+
 Index coefficient_count(Index degree) { return (degree + 1) * (degree + 1) - 4; }
 
 // associated Legendre functions of one order at z for degrees order to `degree`, without the
@@ -103,8 +107,9 @@ HeadShape learn_head_shape(const std::vector<HeadExample>& examples, Index degre
   MatX shapes(n, coefficient_count(degree));
   for (Eigen::Index k = 0; k < n; ++k)
     shapes.row(k) = shape_of(examples[static_cast<std::size_t>(k)], degree).transpose();
-  HeadShape shape{degree, shapes.colwise().mean().transpose(), VecX(degree - 1), {}};
-  const VecX variance = (shapes.rowwise() - shape.mean.transpose()).colwise().squaredNorm() /
+  const VecX mean = shapes.colwise().mean().transpose();
+  HeadShape shape{degree, kBelieved * mean, VecX(degree - 1), {}};
+  const VecX variance = (shapes.rowwise() - mean.transpose()).colwise().squaredNorm() /
                         (static_cast<double>(n) - 1.0);
   for (Index l = 2; l <= degree; ++l)
     shape.spread[l - 2] = std::sqrt(variance.segment(l * l - 4, 2 * l + 1).mean());

@@ -99,7 +99,7 @@ TEST(HeadShape, IsLearnedFromHeadsOfBothSides) {
     if (off(k, 2) < 0.3) kept.push_back(k);
   }
   const MatX Y = head_harmonics(off(kept, Eigen::all), 4);
-  const VecX difference = 24.0 * Y * (learned.mean - 3.5 / 3.0 * truth.mean);
+  const VecX difference = 24.0 * Y * (2.0 * learned.mean - 3.5 / 3.0 * truth.mean);
   EXPECT_LE(std::sqrt(difference.squaredNorm() / static_cast<double>(difference.size())), 0.12);
 }
 TEST(HeadShape, CompletesHalfAHead) {

@@ -32,7 +32,7 @@ struct HeadExample {
   Side side = Side::right;
 };
 
-/// Mean and spread of the heads of at least two femora.
+/// Mean, drawn half-way to a sphere, and spread of the heads of at least two femora.
 /// @throws Error bad_input for fewer, or where no head is found
 /// Source: docs/motion.md section 2.
 HeadShape learn_head_shape(const std::vector<HeadExample>& examples, Index degree = 4);
