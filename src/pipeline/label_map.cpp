@@ -1,18 +1,28 @@
 #include <coxa/pipeline/label_map.h>
 
 #include <coxa/mesh/voxelize.h>
+#include <coxa/pipeline/muscle_names.h>
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace coxa::pipeline {
 namespace {
 
-/// Bones first, so that a thin cartilage is not painted over.
+std::optional<std::size_t> muscle_number(const std::string& name) {
+  const auto& names = muscle_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+/// Muscles first, then bones, so that a thin cartilage is not painted over.
 int paint_order(const std::string& name) {
-  return name.find("cartilage") == std::string::npos ? 0 : 1;
+  if (muscle_number(name)) return 0;
+  return name.find("cartilage") == std::string::npos ? 1 : 2;
 }
 
 /// Colours that 3D Slicer users know: bones ivory and sand, cartilages blue and teal.
@@ -21,6 +31,11 @@ std::array<double, 3> colour_of(const std::string& name) {
   if (name == "hip_bone") return {0.87, 0.74, 0.62};
   if (name == "femoral_cartilage") return {0.26, 0.55, 0.86};
   if (name == "acetabular_cartilage") return {0.12, 0.68, 0.60};
+  if (const auto muscle = muscle_number(name)) {
+    // reds that neighbours in the list do not share
+    const double shade = static_cast<double>((*muscle * 7) % 13) / 13.0;
+    return {0.55 + 0.4 * shade, 0.15 + 0.25 * (1.0 - shade), 0.2 + 0.2 * shade};
+  }
   return {0.6, 0.6, 0.6};
 }
 

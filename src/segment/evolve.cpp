@@ -33,6 +33,9 @@ constexpr double kContactFacing = 0.3;
 /// found something else must not outvote what the others say of them.
 constexpr double kGoodMatch = 0.7;
 
+/// Share of the iterations in which the front of places that count reaches the last one in view.
+constexpr double kGrowing = 0.7;
+
 using Contacts = std::vector<std::unique_ptr<collide::SurfaceContact>>;
 
 /// mm², mean area around a vertex.
@@ -47,14 +50,15 @@ std::size_t level_of(const Body& body, const Resolution& resolution) {
 
 const shape::ProfileSet& profiles_for(const Body& body, const std::string& contrast) {
   for (const shape::ProfileSet& set : body.model->profiles) {
-    if (set.contrast == contrast) return set;
+    const bool alike = body.model->muscle && set.contrast == base_of(contrast);
+    if (set.contrast == contrast || alike) return set;
   }
   fail(ErrorCode::bad_input, "the atlas has no '", contrast, "' profiles for ", body.model->name);
 }
 
 const ProfileKinds* kinds_for(const Body& body, const std::string& contrast) {
   if (!body.prepared) return nullptr;
-  const auto found = body.prepared->kinds.find(contrast);
+  const auto found = body.prepared->kinds.find(body.model->muscle ? base_of(contrast) : contrast);
   return found == body.prepared->kinds.end() ? nullptr : &found->second;
 }
 
@@ -70,7 +74,14 @@ Points regularised_field(const Body& body, const Points& normals, const Resoluti
   return regularised_by_affine(body.points, combined, confidence, resolution.affine_k);
 }
 
-/// Contact between all pairs of bodies and with their obstacles.
+/// Whether boxes about two bodies come near enough for contact in this step.
+bool near(const Points& a, const Points& b) {
+  const auto low = a.colwise().minCoeff().cwiseMax(b.colwise().minCoeff()).eval();
+  const auto high = a.colwise().maxCoeff().cwiseMin(b.colwise().maxCoeff()).eval();
+  return ((low - high).array() <= 2.0 * kContactReach).all();
+}
+
+/// Contact between all near pairs of bodies and with their obstacles.
 Contacts make_contacts(const std::vector<LevelForces>& levels, const Surroundings& surroundings,
                        const SegmentOptions& options) {
   Contacts contacts;
@@ -85,10 +96,11 @@ Contacts make_contacts(const std::vector<LevelForces>& levels, const Surrounding
     contact.stiffness = options.weights.contact / vertex_area(levels[a].mesh());
     const auto slave = collide::make_particle_surface(levels[a].mesh(), levels[a].first());
     for (const TriMesh& obstacle : surroundings.obstacles[a]) {
-      contacts.push_back(std::make_unique<collide::SurfaceContact>(slave, obstacle, contact));
+      if (near(levels[a].mesh().points, obstacle.points))
+        contacts.push_back(std::make_unique<collide::SurfaceContact>(slave, obstacle, contact));
     }
     for (std::size_t b = 0; b < levels.size(); ++b) {
-      if (a == b) continue;
+      if (a == b || !near(levels[a].mesh().points, levels[b].mesh().points)) continue;
       contacts.push_back(std::make_unique<collide::SurfaceContact>(
           slave, collide::make_particle_surface(levels[b].mesh(), levels[b].first()), contact));
     }
@@ -123,7 +135,25 @@ void update_fit(Body& body, const Points& field, const Resolution& resolution) {
   body.fit = fit_model(*body.model, body.points + field, certain, resolution.model_noise, smooth);
 }
 
+/// mm, of the farthest place in view.
+double last_reach(const Body& body) {
+  return body.reach.size() == 0 ? 0.0 : body.reach.cwiseProduct(body.match.seen).maxCoeff();
+}
+
+/// Takes the confidence of what lies beyond the front.
+/// @param grown share of the way from the first reach to the last place in view, >= 0
+/// @returns whether all counts
+bool update_within_front(Body& body, double first_reach, double grown) {
+  const double last = last_reach(body);
+  if (last <= first_reach || grown >= 1.0) return true;
+  const double front = first_reach + grown * (last - first_reach);
+  body.match.confidence.array() *= (body.reach.array() <= front).cast<double>();
+  return false;
+}
+
 }  // namespace
+
+std::string base_of(const std::string& contrast) { return contrast.substr(0, contrast.find('_')); }
 
 ProfileMatch match_body(const Body& body, std::span<const PreparedImage> images,
                         const Resolution& resolution, double gradient_weight) {
@@ -165,9 +195,12 @@ int update_bodies(std::vector<Body>& bodies, const Surroundings& surroundings,
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     monitor.check_cancelled();
     monitor.progress("segment", iteration / static_cast<double>(options.iterations));
+    bool all_count = true;
+    const double grown = iteration / (kGrowing * options.iterations);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       Body& body = bodies[b];
       body.match = match_body(body, surroundings.images, resolution, options.gradient_weight);
+      all_count = update_within_front(body, resolution.first_reach, grown) && all_count;
       const Points normals = simplex_normals(finest_mesh(body));
       const Points field = regularised_field(body, normals, resolution);
       update_fit(body, field, resolution);
@@ -201,7 +234,7 @@ int update_bodies(std::vector<Body>& bodies, const Surroundings& surroundings,
       move += change.rowwise().norm().sum();
       count += static_cast<double>(change.rows());
     }
-    if (move / count < options.tolerance) return iteration + 1;
+    if (all_count && move / count < options.tolerance) return iteration + 1;
   }
   return options.iterations;
 }

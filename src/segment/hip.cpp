@@ -5,6 +5,7 @@
 #include <coxa/segment/lay_on_hosts.h>
 #include <coxa/segment/layer_extent.h>
 #include <coxa/segment/layer_search.h>
+#include <coxa/segment/muscles.h>
 #include <coxa/segment/placement.h>
 #include <coxa/segment/pose_search.h>
 #include <coxa/segment/seat.h>
@@ -59,6 +60,38 @@ double thinnest_slice(const std::vector<PreparedImage>& images) {
   return thinnest;
 }
 
+/// mm. A landmark nearer than this to a bone belongs to it; the centre of a femoral head does.
+constexpr double kOwnLandmark = 30.0;
+
+/// From every finest vertex of the mean to the nearest landmark of those given that belongs to the
+/// bone, mm; empty where none does.
+VecX reach_of(const shape::StructureModel& model, const shape::Landmarks& given,
+              const shape::Atlas& atlas) {
+  const Points& points = model.hierarchy.levels.back().points;
+  VecX reach;
+  for (const auto& [name, place] : given) {
+    const auto known = atlas.landmarks.find(name);
+    if (known == atlas.landmarks.end()) continue;
+    const VecX away = (points.rowwise() - known->second.transpose()).rowwise().norm();
+    if (away.minCoeff() > kOwnLandmark) continue;
+    reach = reach.size() == 0 ? away : VecX(reach.cwiseMin(away));
+  }
+  return reach;
+}
+
+/// mm. Cortex this far from every landmark, at a shaft's end, is as thick as the person's: any kind
+/// of profile of the bone may be met there.
+constexpr double kOwnKindsReach = 60.0;
+
+void update_any_kind_beyond(Preparation& preparation, const VecX& reach) {
+  for (auto& [contrast, kinds] : preparation.kinds) {
+    const auto any = 1.0 / static_cast<double>(kinds.share.cols());
+    for (Eigen::Index v = 0; v < reach.size(); ++v) {
+      if (reach[v] > kOwnKindsReach) kinds.share.row(v).setConstant(any);
+    }
+  }
+}
+
 /// A bone's confidence below which it is looked for twice more, in a narrower search (share of the
 /// usual range): from the same start, and from where dark lines inside it lie.
 constexpr double kDoubtfulBone = 0.65, kNarrowShare = 2.0 / 3.0;
@@ -92,25 +125,35 @@ Hip::Hip(std::vector<PreparedImage> images, const shape::Atlas& atlas,
     : images_(std::move(images)), atlas_(atlas), options_(options) {
   choose_models();
   for (std::size_t s = 0; s < models_.size(); ++s)
-    preparations_.push_back(hosts_[s] ? Preparation{} : prepared(*models_[s]));
+    preparations_.push_back(is_bone(s) ? prepared(*models_[s]) : Preparation{});
   bodies_.resize(models_.size());
 }
 
 void Hip::choose_models() {
-  std::vector<const shape::StructureModel*> all;
-  for (const shape::StructureModel& model : atlas_.structures) all.push_back(&model);
-  const auto hosts = find_hosts(all);
+  // muscles lie on nothing
+  std::vector<const shape::StructureModel*> firm, muscles;
+  for (const shape::StructureModel& model : atlas_.structures)
+    (model.muscle ? muscles : firm).push_back(&model);
+  const auto hosts = find_hosts(firm);
   std::set<std::string> wanted;
+  bool any_muscle = false;
   for (const std::string& name : options_.structures) {
-    wanted.insert(shape::structure(atlas_, name).name);
+    const shape::StructureModel& model = shape::structure(atlas_, name);
+    wanted.insert(model.name);
+    any_muscle = any_muscle || model.muscle;
   }
-  for (std::size_t s = 0; s < all.size(); ++s) {
-    if (wanted.contains(all[s]->name) && hosts[s]) wanted.insert(all[*hosts[s]]->name);
+  for (std::size_t s = 0; s < firm.size(); ++s) {
+    if (wanted.contains(firm[s]->name) && hosts[s]) wanted.insert(firm[*hosts[s]]->name);
+    // bones carry the muscles
+    if (any_muscle && !hosts[s]) wanted.insert(firm[s]->name);
   }
-  for (const shape::StructureModel* model : all) {
+  for (const shape::StructureModel* model : firm) {
     if (wanted.contains(model->name)) models_.push_back(model);
   }
   hosts_ = find_hosts(models_);
+  // the forces between muscles need their neighbours: all of them, whichever are asked for
+  if (any_muscle) models_.insert(models_.end(), muscles.begin(), muscles.end());
+  hosts_.resize(models_.size());
 }
 
 void Hip::choose_contrasts(const std::vector<Body>& bodies, Resolution resolution) {
@@ -132,7 +175,7 @@ void Hip::segment_bones(const shape::Landmarks& landmarks, const Monitor& monito
   std::vector<std::size_t> numbers;
   std::vector<const shape::StructureModel*> models;
   for (std::size_t s = 0; s < models_.size(); ++s) {
-    if (hosts_[s]) continue;
+    if (!is_bone(s)) continue;
     numbers.push_back(s);
     models.push_back(models_[s]);
   }
@@ -143,6 +186,8 @@ void Hip::segment_bones(const shape::Landmarks& landmarks, const Monitor& monito
   for (std::size_t b = 0; b < models.size(); ++b) {
     bones.push_back(placed_body(*models[b], placed[b]));
     bones.back().prepared = &preparations_[numbers[b]];
+    bones.back().reach = reach_of(*models[b], landmarks, atlas_);
+    update_any_kind_beyond(preparations_[numbers[b]], bones.back().reach);
   }
   const double slice = thinnest_slice(images_);
   const double wide = std::max(options_.search_range, kVoxelsSearched * slice);
@@ -209,11 +254,28 @@ void Hip::segment_layers(const Monitor& monitor) {
   // no layer enters any bone
   Obstacles bones;
   for (std::size_t s = 0; s < models_.size(); ++s) {
-    if (!hosts_[s]) bones.push_back(surface_mesh(bodies_[s]));
+    if (is_bone(s)) bones.push_back(surface_mesh(bodies_[s]));
   }
   update_through(layers, resolutions, images_, std::vector<Obstacles>(layers.size(), bones), seats,
                  options_, monitor);
   for (std::size_t b = 0; b < layers.size(); ++b) bodies_[numbers[b]] = std::move(layers[b]);
+}
+
+void Hip::segment_muscles(const Monitor& monitor) {
+  std::vector<FoundBone> bones;
+  std::vector<std::size_t> numbers;
+  std::vector<const shape::StructureModel*> models;
+  for (std::size_t s = 0; s < models_.size(); ++s) {
+    if (is_bone(s))
+      bones.push_back(
+          {dual_surface(models_[s]->hierarchy.levels.back()), surface_mesh(bodies_[s])});
+    if (!is_muscle(s)) continue;
+    numbers.push_back(s);
+    models.push_back(models_[s]);
+  }
+  if (numbers.empty()) return;
+  std::vector<Body> muscles = found_muscles(models, bones, images_, options_, monitor);
+  for (std::size_t m = 0; m < muscles.size(); ++m) bodies_[numbers[m]] = std::move(muscles[m]);
 }
 
 std::vector<Surface> Hip::surfaces(std::vector<std::string>& warnings) const {

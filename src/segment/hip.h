@@ -17,10 +17,14 @@ class Hip {
 
   void segment_bones(const shape::Landmarks& landmarks, const Monitor& monitor);
   void segment_layers(const Monitor& monitor);
+  /// Muscles from where the bones carry them; nothing where none is asked for.
+  void segment_muscles(const Monitor& monitor);
 
   const std::vector<Body>& bodies() const { return bodies_; }
   const std::vector<PreparedImage>& images() const { return images_; }
-  bool is_bone(std::size_t s) const { return !hosts_[s].has_value(); }
+  bool is_bone(std::size_t s) const { return !hosts_[s].has_value() && !is_muscle(s); }
+  bool has_muscles() const { return !models_.empty() && models_.back()->muscle; }
+  bool is_muscle(std::size_t s) const { return models_[s]->muscle; }
 
   /// The surfaces of all bodies: layers with the extent that the images show, on their bones.
   std::vector<Surface> surfaces(std::vector<std::string>& warnings) const;

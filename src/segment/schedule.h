@@ -14,4 +14,7 @@ std::vector<Resolution> bone_resolutions(double range);
 /// Cartilages start on their segmented bone, so they have no far way to go.
 std::vector<Resolution> layer_resolutions();
 
+/// Of muscles that already lie about where the image shows muscle.
+std::vector<Resolution> muscle_resolutions();
+
 }  // namespace coxa::segment

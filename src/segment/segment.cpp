@@ -56,6 +56,7 @@ std::map<std::string, double> landmark_distances(const Hip& hip, const shape::At
 SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& options) {
   SegmentResult result;
   double bone_confidence = 0.0, n_bones = 0.0;
+  std::string muscles_cut;
   const std::vector<Surface> surfaces = hip.surfaces(result.warnings);
   for (std::size_t s = 0; s < hip.bodies().size(); ++s) {
     const Body& body = hip.bodies()[s];
@@ -72,11 +73,17 @@ SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& optio
     }
     const Surface& surface = surfaces[s];
     result.surfaces[body.model->name] = side == Side::left ? mirrored(surface) : surface;
-    if (quality.in_view < 0.5) {
+    if (hip.is_muscle(s) && quality.in_view < 0.5) {
+      muscles_cut += (muscles_cut.empty() ? "" : ", ") + body.model->name;
+    } else if (quality.in_view < 0.5) {
       result.warnings.push_back(join_text("only ", std::lround(100.0 * quality.in_view), " % of ",
                                           body.model->name,
                                           " is in view; the rest is the shape model's"));
     }
+  }
+  if (!muscles_cut.empty()) {
+    result.warnings.push_back("less than half is in view of " + muscles_cut +
+                              "; the rest is the shape model's");
   }
   result.quality = n_bones > 0.0 ? bone_confidence / n_bones : 1.0;
   if (result.quality < kDoubtfulQuality) {
@@ -102,14 +109,17 @@ SegmentResult segment(const std::vector<Volume>& volumes, const shape::Atlas& at
   require(!volumes.empty(), "there is no image to segment");
   std::vector<PreparedImage> images;
   for (const Volume& volume : volumes) {
-    images.push_back(
-        prepare_image(side == Side::left ? mirrored(volume) : volume, options.correct_bias));
+    images.push_back(prepare_image(side == Side::left ? mirrored(volume) : volume,
+                                   options.correct_bias, monitor));
   }
   shape::Landmarks ours = landmarks_of_side(landmarks, atlas, side);
   if (side == Side::left) ours = mirrored(ours);
   Hip hip(std::move(images), atlas, options);
-  hip.segment_bones(ours, part_of(monitor, "segment bones", 0.0, 0.7));
-  hip.segment_layers(part_of(monitor, "segment cartilages", 0.7, 1.0));
+  const double bones_and_layers = hip.has_muscles() ? 0.5 : 1.0;
+  hip.segment_bones(ours, part_of(monitor, "segment bones", 0.0, 0.7 * bones_and_layers));
+  hip.segment_layers(
+      part_of(monitor, "segment cartilages", 0.7 * bones_and_layers, bones_and_layers));
+  hip.segment_muscles(part_of(monitor, "segment muscles", bones_and_layers, 1.0));
   SegmentResult result = make_result(hip, side, options);
   result.landmark_distances = landmark_distances(hip, atlas, ours);
   return result;

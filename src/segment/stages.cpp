@@ -6,13 +6,6 @@
 #include <set>
 
 namespace coxa::segment {
-namespace {
-
-/// "t1" of "t1_fluid": what the bones show; whether fluid parts the cartilages only these show.
-std::string base_of(const std::string& contrast) { return contrast.substr(0, contrast.find('_')); }
-
-}  // namespace
-
 std::vector<PreparedImage> smoothed_images(const std::vector<PreparedImage>& images, double sigma) {
   std::vector<PreparedImage> out = images;
   if (sigma <= 0.0) return out;

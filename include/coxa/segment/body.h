@@ -24,7 +24,9 @@ struct Body {
   Points points;                          ///< V×3 finest level, LPS mm
   ModelFit fit;                           ///< the shape model's opinion
   ProfileMatch match;                     ///< of the last iteration, finest level
-  VecX seat;  ///< V: 1 on vertices that lie on the host's surface; empty without a host
+  VecX reach;  ///< V, mm: from the bone's nearest given landmark in the mean shape; empty: none
+               ///< given
+  VecX seat;   ///< V: 1 on vertices that lie on the host's surface; empty without a host
 };
 
 /// The finest level's topology with the body's positions.

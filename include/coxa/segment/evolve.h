@@ -6,6 +6,7 @@
 #include <coxa/segment/segment.h>
 
 #include <span>
+#include <string>
 #include <vector>
 
 namespace coxa::segment {
@@ -22,8 +23,11 @@ struct Resolution {
   double level_share = 1.0;  ///< of the finest part in the combination with coarser levels' forces
   int score_smoothing = 4;   ///< passes over neighbours before each vertex chooses its shift
   double model_noise = 2.0;  ///< mm, trust of the statistical fit in a single vertex' match
-  bool fit_only = false;     ///< bodies follow their fitted shape: no particles are moved freely
-  bool smooth = true;        ///< the fit may use the bodies' smooth deformations
+  /// mm, infinite or > 0: what lies farther from every landmark of a body counts only bit by bit,
+  /// nearer places first, so that the model has arrived there when it is looked for.
+  double first_reach = kInfinity;
+  bool fit_only = false;  ///< bodies follow their fitted shape: no particles are moved freely
+  bool smooth = true;     ///< the fit may use the bodies' smooth deformations
 };
 
 /// A rigid surface that the bodies may not enter.
@@ -46,6 +50,10 @@ struct Surroundings {
 int update_bodies(std::vector<Body>& bodies, const Surroundings& surroundings,
                   const Resolution& resolution, const SegmentOptions& options,
                   const Monitor& monitor);
+
+/// "t1" of "t1_fluid": what bones and muscles show; whether fluid parts the cartilages only these
+/// show.
+std::string base_of(const std::string& contrast);
 
 /// Matches the profiles at the body's present finest positions.
 ProfileMatch match_body(const Body& body, std::span<const PreparedImage> images,
