@@ -15,6 +15,7 @@
 #include <set>
 #include <span>
 
+#include "landmark_reach.h"
 #include "result.h"
 #include "schedule.h"
 #include "stages.h"
@@ -58,38 +59,6 @@ double thinnest_slice(const std::vector<PreparedImage>& images) {
   for (const PreparedImage& image : images)
     thinnest = std::min(thinnest, image.volume.spacing.maxCoeff());
   return thinnest;
-}
-
-/// mm. A landmark nearer than this to a bone belongs to it; the centre of a femoral head does.
-constexpr double kOwnLandmark = 30.0;
-
-/// From every finest vertex of the mean to the nearest landmark of those given that belongs to the
-/// bone, mm; empty where none does.
-VecX reach_of(const shape::StructureModel& model, const shape::Landmarks& given,
-              const shape::Atlas& atlas) {
-  const Points& points = model.hierarchy.levels.back().points;
-  VecX reach;
-  for (const auto& [name, place] : given) {
-    const auto known = atlas.landmarks.find(name);
-    if (known == atlas.landmarks.end()) continue;
-    const VecX away = (points.rowwise() - known->second.transpose()).rowwise().norm();
-    if (away.minCoeff() > kOwnLandmark) continue;
-    reach = reach.size() == 0 ? away : VecX(reach.cwiseMin(away));
-  }
-  return reach;
-}
-
-/// mm. Cortex this far from every landmark, at a shaft's end, is as thick as the person's: any kind
-/// of profile of the bone may be met there.
-constexpr double kOwnKindsReach = 60.0;
-
-void update_any_kind_beyond(Preparation& preparation, const VecX& reach) {
-  for (auto& [contrast, kinds] : preparation.kinds) {
-    const auto any = 1.0 / static_cast<double>(kinds.share.cols());
-    for (Eigen::Index v = 0; v < reach.size(); ++v) {
-      if (reach[v] > kOwnKindsReach) kinds.share.row(v).setConstant(any);
-    }
-  }
 }
 
 /// A bone's confidence below which it is looked for twice more, in a narrower search (share of the
@@ -186,7 +155,8 @@ void Hip::segment_bones(const shape::Landmarks& landmarks, const Monitor& monito
   for (std::size_t b = 0; b < models.size(); ++b) {
     bones.push_back(placed_body(*models[b], placed[b]));
     bones.back().prepared = &preparations_[numbers[b]];
-    bones.back().reach = reach_of(*models[b], landmarks, atlas_);
+    bones.back().reach =
+        reach_to_far_end(reach_of(*models[b], landmarks, atlas_), bones.back().points, images_);
     update_any_kind_beyond(preparations_[numbers[b]], bones.back().reach);
   }
   const double slice = thinnest_slice(images_);
