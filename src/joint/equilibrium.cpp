@@ -23,6 +23,8 @@ constexpr double kLoosestLinear = 0.1, kTightestLinear = 1e-3;
 // net force left on a cartilage, in residual tolerances: with the usual 2e-4, half of what the
 // bones' reactions may be out of balance
 constexpr double kImbalance = 2.5;
+// Newton's method goes so far below the limit of the residual, which new pairs will raise again
+constexpr double kNewtonShare = 0.3, kNewtonShareByHand = 0.6;
 // stale pairs make no use of a residual smaller than this share of what they left
 constexpr double kStalePairs = 0.03;
 // residual tolerance is tightened no further than by this for the sake of the net force
@@ -222,6 +224,7 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
       .residual = slack * options_.residual_tolerance,
       .imbalance = slack * kImbalance * options_.residual_tolerance,
       .penetration = std::min(slack, kOverlapSlack) * options_.penetration_tolerance};
+  const double newton_share = exactness == Exactness::by_hand ? kNewtonShareByHand : kNewtonShare;
   int iterations = 0;
   std::string reason;
   Relaxation relaxation;
@@ -256,8 +259,9 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
     const bool only_imbalance =
         settling.residual <= limits.residual && settling.imbalance > limits.imbalance;
     const double nearer = only_imbalance ? limits.imbalance / settling.imbalance : 1.0;
-    const double tolerance = std::max(0.3 * limits.residual * std::max(nearer, kFinestNewton),
-                                      kStalePairs * settling.residual);
+    const double tolerance =
+        std::max(newton_share * limits.residual * std::max(nearer, kFinestNewton),
+                 kStalePairs * settling.residual);
     const VecX before = state.x;
     const SolveReport newton = relax(state, force, tolerance, reference_force(state, force));
     iterations += newton.iterations;
