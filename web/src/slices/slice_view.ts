@@ -24,7 +24,7 @@ export interface SliceEvents {
   moveLandmark(name: string, place: Vec3, done: boolean): void;
 }
 
-const kMarkRadius = 6; // px
+const kMarkRadius = 0.43; // of the page's letters
 const kMarkDepth = 3; // mm from the slice a landmark is still drawn
 const letters: Record<Orientation, [left: string, right: string, top: string, bottom: string]> = {
   axial: ["R", "L", "A", "P"],
@@ -81,6 +81,14 @@ export class SliceView {
 
   get sliceCount(): number {
     return this.state.volume.size[this.axes.w];
+  }
+
+  /** Height of the page's letters, px: larger on large screens. */
+  private get letter(): number {
+    return parseFloat(getComputedStyle(document.documentElement).fontSize);
+  }
+  private get mark(): number {
+    return kMarkRadius * this.letter;
   }
 
   private get index(): Vec3 {
@@ -171,7 +179,7 @@ export class SliceView {
   }
 
   private drawLandmarks(context: CanvasRenderingContext2D): void {
-    context.font = "12px system-ui, sans-serif";
+    context.font = `${0.86 * this.letter}px system-ui, sans-serif`;
     context.textAlign = "left";
     context.textBaseline = "middle";
     for (const { name, position_lps_mm } of this.state.landmarks) {
@@ -181,10 +189,10 @@ export class SliceView {
       context.lineWidth = chosen ? 3 : 1.5;
       context.strokeStyle = chosen ? "#ffe14d" : "#7df0ff";
       context.beginPath();
-      context.arc(x, y, kMarkRadius, 0, 2 * Math.PI);
+      context.arc(x, y, this.mark, 0, 2 * Math.PI);
       context.stroke();
       context.fillStyle = context.strokeStyle;
-      context.fillText(name, x + kMarkRadius + 4, y);
+      context.fillText(name, x + this.mark + 4, y);
     }
   }
 
@@ -194,8 +202,8 @@ export class SliceView {
     for (const { name, position_lps_mm } of this.state.pins) {
       if (this.depth(position_lps_mm) > kMarkDepth) continue;
       const [x, y] = this.toScreen(indexOf(this.state.volume, position_lps_mm));
-      context.strokeRect(x - kMarkRadius + 1, y - kMarkRadius + 1, 2 * kMarkRadius - 2, 2 * kMarkRadius - 2);
-      context.fillText(name, x + kMarkRadius + 4, y);
+      context.strokeRect(x - this.mark + 1, y - this.mark + 1, 2 * this.mark - 2, 2 * this.mark - 2);
+      context.fillText(name, x + this.mark + 4, y);
     }
   }
 
@@ -206,16 +214,17 @@ export class SliceView {
     context.fillStyle = "#ffffff";
     context.shadowColor = "#000000"; // readable on bright fat too
     context.shadowBlur = 4;
-    context.font = "bold 13px system-ui, sans-serif";
+    const em = this.letter;
+    context.font = `bold ${0.93 * em}px system-ui, sans-serif`;
     context.textBaseline = "middle";
     context.textAlign = "center";
-    context.fillText(left, 10, height / 2);
-    context.fillText(right, width - 10, height / 2);
-    context.fillText(top, width / 2, 11);
-    context.fillText(bottom, width / 2, height - 11);
+    context.fillText(left, 0.7 * em, height / 2);
+    context.fillText(right, width - 0.7 * em, height / 2);
+    context.fillText(top, width / 2, 0.8 * em);
+    context.fillText(bottom, width / 2, height - 0.8 * em);
     context.textAlign = "left";
-    context.font = "12px system-ui, sans-serif";
-    context.fillText(`${this.orientation} ${k + 1} / ${this.sliceCount}`, 8, 14);
+    context.font = `${0.86 * em}px system-ui, sans-serif`;
+    context.fillText(`${this.orientation} ${k + 1} / ${this.sliceCount}`, 0.6 * em, em);
   }
 
   /** Distance of a place from this slice, mm. */
@@ -227,7 +236,7 @@ export class SliceView {
     for (const { name, position_lps_mm } of [...this.state.pins, ...this.state.landmarks]) {
       if (this.depth(position_lps_mm) > kMarkDepth) continue;
       const [px, py] = this.toScreen(indexOf(this.state.volume, position_lps_mm));
-      if (Math.hypot(px - x, py - y) <= kMarkRadius + 3) return name;
+      if (Math.hypot(px - x, py - y) <= this.mark + 3) return name;
     }
     return null;
   }
