@@ -130,6 +130,7 @@ void update_muscle_profiles(shape::Atlas& atlas, const std::vector<shape::Carrie
   const auto n_muscles = static_cast<double>(
       std::count_if(atlas.structures.begin(), atlas.structures.end(),
                     [](const shape::StructureModel& model) { return model.muscle; }));
+  if (n_muscles == 0.0) return;
   std::vector<shape::VirtualHip> hips = {with_means(atlas, {})};
   for (const shape::CarriedMuscles& example : examples) {
     if (static_cast<double>(example.surfaces.size()) >= kLeastShare * n_muscles)

@@ -81,7 +81,7 @@ std::vector<HipExample> carried_examples(const Atlas& atlas,
                                          const std::vector<HipExample>& examples,
                                          const std::vector<std::string>& names,
                                          const MuscleOptions& options, const Monitor& monitor) {
-  const auto controls = control_surfaces(atlas, options.control_spacing);
+  std::vector<TrustedSurface> controls;  // made for the first example that has muscles
   std::vector<HipExample> carried;
   for (const HipExample& example : examples) {
     HipExample muscles;
@@ -93,6 +93,7 @@ std::vector<HipExample> carried_examples(const Atlas& atlas,
     }
     if (muscles.surfaces.empty()) continue;
     monitor.check_cancelled();
+    if (controls.empty()) controls = control_surfaces(atlas, options.control_spacing);
     const ThinPlateSpline map = carrier(controls, example, options);
     for (auto& [name, surface] : muscles.surfaces) surface.mesh.points = map(surface.mesh.points);
     carried.push_back(std::move(muscles));

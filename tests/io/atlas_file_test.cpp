@@ -36,6 +36,7 @@ shape::Atlas small_atlas() {
                             VecX::Constant(finest.n_vertices(), 0.5)});
   model.landmark_vertices["femoral_shaft_distal"] = 7;
   model.n_bone_side = 3;
+  model.muscle = true;
   model.leave_one_out_error = 0.25;
   return {{model}, {{"femoral_head_centre", Vec3(1, 2, 3)}}, {"toy/1"}, "mine"};
 }
@@ -62,6 +63,8 @@ TEST(AtlasFile, GivesBackWhatWasWritten) {
   EXPECT_NEAR(b.reference[5].height, a.reference[5].height, 1e-4);
   EXPECT_EQ(b.landmark_vertices, a.landmark_vertices);
   EXPECT_EQ(b.n_bone_side, 3);
+  EXPECT_TRUE(b.muscle);
+  EXPECT_FALSE(b.generic);
   EXPECT_EQ(b.leave_one_out_error, 0.25);
 }
 
