@@ -81,7 +81,7 @@ TEST_F(CommandLine, MeasuresAHipAndItsRangeOfMotion) {
 TEST_F(CommandLine, PrintsItsDefaults) {
   const Outcome toml = coxa_run("config"), json = coxa_run("config --json");
   EXPECT_EQ(toml.exit_code, 0);
-  EXPECT_TRUE(toml.says("[joint]\nforce_N = 500.0\n")) << toml.output;
+  EXPECT_TRUE(toml.says("[joint]\nbare_bone = \"hip_bone\"\nforce_N = 500.0\n")) << toml.output;
   EXPECT_TRUE(json.says("\"joint.force_N\":500.0")) << json.output;
 }
 TEST_F(CommandLine, SaysWhatAFileIs) {
