@@ -38,6 +38,8 @@ async function scrub(page: Page): Promise<void> {
 async function live(page: Page, seconds: number): Promise<void> {
   await page.click("#tab-exam");
   await page.waitForFunction(() => document.querySelector("#side p[data-status=converged]"), null, { timeout: 120_000 });
+  // a record takes every answer, also those that the page is too busy drawing to show
+  await page.click("button:text-is('Record')");
   const found = await page.evaluate(async (duration) => {
     const all: Record<string, number>[] = [];
     const times = document.querySelector("#side tbody[data-times]") as HTMLElement;
@@ -46,14 +48,17 @@ async function live(page: Page, seconds: number): Promise<void> {
     watch.observe(times, { attributes: true, attributeFilter: ["data-times"] });
     const start = performance.now();
     while (performance.now() - start < 1000 * duration) {
-      slider.value = String(10 + 30 * Math.abs(Math.sin((performance.now() - start) / 4000)));
+      // farther than the leg comes until it is called back: it never waits for the next pose
+      slider.value = String(Math.floor((performance.now() - start) / 1500) % 2 === 0 ? 60 : 0);
       slider.dispatchEvent(new Event("input"));
       await new Promise((done) => setTimeout(done, 30));
     }
     watch.disconnect();
     return all;
   }, seconds);
-  console.log(`live: ${found.length} answers in ${seconds} s, ${(found.length / seconds).toFixed(1)} a second; ${found[0]?.["tets"]} tetrahedra, ${((found[0]?.["bytes"] ?? 0) / 1000).toFixed(0)} kB an answer`);
+  await page.click("button:text-is('Stop')");
+  const arrived = Number(/(\d+) poses/.exec(await page.locator("#panel p.note", { hasText: "poses" }).innerText())?.[1]);
+  console.log(`live: ${arrived} answers in ${seconds} s, ${(arrived / seconds).toFixed(1)} a second; shown ${(found.length / seconds).toFixed(1)} a second; ${found[0]?.["tets"]} tetrahedra, ${((found[0]?.["bytes"] ?? 0) / 1000).toFixed(0)} kB an answer`);
   for (const key of ["solver", "packing", "transfer", "waiting", "javascript", "drawing"]) console.log(`  ${key}, ms: ${text(found.map((times) => times[key] ?? NaN))}`);
 }
 
