@@ -4,16 +4,12 @@
 
 #include <Eigen/LU>
 
-#include <array>
 #include <cmath>
 
 namespace coxa::fem {
 namespace {
 
 using LocalGradient = Eigen::Matrix<double, Eigen::Dynamic, 4>;  // dN/dL, L barycentric
-
-constexpr std::array<std::array<int, 2>, 6> kEdges{
-    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
 /// dN/dL at barycentric coordinates L: L_i for four nodes; L_i (2 L_i - 1) and 4 L_i L_j for ten.
 LocalGradient local_gradient(int n_nodes, const Eigen::Vector4d& L) {
@@ -24,7 +20,7 @@ LocalGradient local_gradient(int n_nodes, const Eigen::Vector4d& L) {
   }
   for (int i = 0; i < 4; ++i) dN(i, i) = 4.0 * L[i] - 1.0;
   for (int k = 0; k < 6; ++k) {
-    const auto [i, j] = kEdges[static_cast<std::size_t>(k)];
+    const auto [i, j] = kEdgeCorners[static_cast<std::size_t>(k)];
     dN(4 + k, i) = 4.0 * L[j];
     dN(4 + k, j) = 4.0 * L[i];
   }

@@ -2,6 +2,7 @@
 
 #include <coxa/mesh/tet_mesh.h>
 
+#include <array>
 #include <vector>
 
 namespace coxa::fem {
@@ -14,6 +15,10 @@ struct ElementShape {
   std::vector<Eigen::Vector4d> barycentric;  ///< n_points, their values
   std::vector<Vec3> corner_gradient;         ///< n_points × 4, their slopes, 1/mm
 };
+
+/// The corners that each mid node of an element lies between.
+inline constexpr std::array<std::array<int, 2>, 6> kEdgeCorners{
+    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
 /// Nodes of an element: 4, or 10 where the mesh has mid nodes.
 inline int nodes_per_element(const TetMesh& mesh) { return mesh.mid_nodes.rows() > 0 ? 10 : 4; }

@@ -77,15 +77,15 @@ struct PoreFluid::Impl {
   }
 
   void number_pressures(const TetMesh& mesh) {
-    constexpr int kEdges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
     for (const Index node : mesh.tets.reshaped()) pressure_of[static_cast<Size>(node)] = 0;
     n_particles = mesh.n_vertices();
     for (Index& particle : pressure_of)
       if (particle == 0) particle = n_particles++;
     for (Index e = 0; n_nodes == 10 && e < mesh.n_tets(); ++e)
-      for (int k = 0; k < 6; ++k)
-        mid_ends[static_cast<Size>(mesh.mid_nodes(e, k))] = {mesh.tets(e, kEdges[k][0]),
-                                                             mesh.tets(e, kEdges[k][1])};
+      for (int k = 0; k < 6; ++k) {
+        const auto [a, b] = kEdgeCorners[static_cast<Size>(k)];
+        mid_ends[static_cast<Size>(mesh.mid_nodes(e, k))] = {mesh.tets(e, a), mesh.tets(e, b)};
+      }
   }
 
   void add_points(const ElementShape& shape) {

@@ -90,9 +90,10 @@ double median(VecX values) {
   return *middle;
 }
 
-// Tukey's biweight; the scale is the median absolute residual, over 0.6745 for a normal
-// distribution
+}  // namespace
+
 VecX tukey_weights(const VecX& residuals, double outlier_scale) {
+  if (outlier_scale == 0.0) return VecX::Ones(residuals.size());
   const double sigma = median(residuals.cwiseAbs()) / 0.6745;
   const double cut = outlier_scale * sigma;
   if (!(cut > 0.0)) return (residuals.array() == 0.0).cast<double>();
@@ -101,8 +102,6 @@ VecX tukey_weights(const VecX& residuals, double outlier_scale) {
     return u > 0.0 ? u * u : 0.0;
   });
 }
-
-}  // namespace
 
 Sphere fit_sphere(const Points& points, const VecX& weights, const SphereFitOptions& options) {
   require(options.outlier_scale >= 0.0, "outlier_scale must not be negative, got ",

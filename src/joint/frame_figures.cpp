@@ -2,6 +2,7 @@
 
 #include <coxa/core/parallel.h>
 #include <coxa/mesh/measures.h>
+#include <coxa/mesh/tet_quality.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -139,7 +140,7 @@ ElementStrains element_strains(const fem::ElasticForce& elasticity, const VecX& 
 
 /// Regions are two hours wide, the first around twelve.
 std::size_t region_of(double hour) { return static_cast<std::size_t>((hour + 1.0) / 2.0) % 6; }
-std::size_t sector_of(double hour) { return static_cast<std::size_t>(std::lround(hour)) % 12; }
+std::size_t sector_of(double hour) { return static_cast<std::size_t>(ClockFace::sector(hour)); }
 
 template <std::size_t N, class PartOf>
 void fill_sectors(std::array<SectorFigures, N>& sectors, const SocketElements& elements,
@@ -184,13 +185,11 @@ void find_crushed(CrushFigures& crush, const TetMesh& mesh, const fem::ElasticFo
 
 SocketElements socket_elements(const JointModel& model) {
   const TetMesh& mesh = model.acetabular_cartilage;
-  SocketElements elements{socket_clock(model), VecX(mesh.n_tets()), VecX(mesh.n_tets())};
+  SocketElements elements{socket_clock(model), VecX(mesh.n_tets()),
+                          tet_volumes(mesh.points, mesh.tets)};
   for (Index t = 0; t < mesh.n_tets(); ++t) {
     const Points corners = mesh.points(mesh.tets.row(t), Eigen::all);
     elements.hour[t] = elements.clock.hour(corners.colwise().mean().transpose());
-    Mat3 edges;
-    for (int k = 0; k < 3; ++k) edges.col(k) = (corners.row(k + 1) - corners.row(0)).transpose();
-    elements.volume[t] = edges.determinant() / 6.0;
   }
   return elements;
 }

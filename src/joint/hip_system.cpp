@@ -19,6 +19,18 @@ constexpr double kFemurReach = 10.0;
 // all only where they face each other: not at all beyond about 80 degrees, fully within 60
 constexpr double kFacing = 0.2, kFacingFully = 0.5;
 
+collide::ContactOptions contact_options(
+    double stiffness, double search_distance,
+    collide::ContactQuadrature quadrature = collide::ContactQuadrature::three_points) {
+  return {.stiffness = stiffness,
+          .search_distance = search_distance,
+          .facing = kFacing,
+          .facing_fully = kFacingFully,
+          .normal = collide::ContactNormal::smooth,
+          .quadrature = quadrature,
+          .rule = collide::ContactRule::nodal};
+}
+
 std::vector<Index> nodes_of(const Triangles& facets, Index first) {
   std::vector<Index> nodes(facets.data(), facets.data() + facets.size());
   std::sort(nodes.begin(), nodes.end());
@@ -171,13 +183,7 @@ collide::SurfaceContact HipSystem::make_cartilage_contact(double stiffness) cons
                                                   : collide::ContactQuadrature::three_points;
   collide::SurfaceContact contact(collide::make_particle_surface(socket),
                                   carried(femoral, n_acetabular_, translation()),
-                                  {.stiffness = stiffness,
-                                   .search_distance = kSearchDistance,
-                                   .facing = kFacing,
-                                   .facing_fully = kFacingFully,
-                                   .normal = collide::ContactNormal::smooth,
-                                   .quadrature = quadrature,
-                                   .rule = collide::ContactRule::nodal});
+                                  contact_options(stiffness, kSearchDistance, quadrature));
   contact.update_curvature(reference());
   return contact;
 }
@@ -189,12 +195,7 @@ std::optional<collide::SurfaceContact> HipSystem::make_bone_contact(double stiff
   TriMesh bone = part_within(model_.hip_bone, centre_, radius + kBoneSearch + reach);
   if (bone.empty()) return std::nullopt;
   return collide::SurfaceContact(carried(femoral, n_acetabular_, translation()), std::move(bone),
-                                 {.stiffness = stiffness,
-                                  .search_distance = kBoneSearch,
-                                  .facing = kFacing,
-                                  .facing_fully = kFacingFully,
-                                  .normal = collide::ContactNormal::smooth,
-                                  .rule = collide::ContactRule::nodal});
+                                 contact_options(stiffness, kBoneSearch));
 }
 
 std::optional<collide::SurfaceContact> HipSystem::make_femur_contact(double stiffness) const {
@@ -202,12 +203,7 @@ std::optional<collide::SurfaceContact> HipSystem::make_femur_contact(double stif
   const Triangles socket = facets_with(model_.acetabular_cartilage, FacetTag::articular_side);
   collide::SurfaceContact contact(collide::make_particle_surface(socket),
                                   carried(bare_femur_, first_femur_point(), translation()),
-                                  {.stiffness = stiffness,
-                                   .search_distance = kBoneSearch,
-                                   .facing = kFacing,
-                                   .facing_fully = kFacingFully,
-                                   .normal = collide::ContactNormal::smooth,
-                                   .rule = collide::ContactRule::nodal});
+                                  contact_options(stiffness, kBoneSearch));
   contact.update_curvature(reference());
   return contact;
 }

@@ -144,16 +144,6 @@ Mat3 head_axes(const Vec3& neck, Side side) {
   return axes;
 }
 
-VecX tukey_weights(const VecX& residuals, double outlier_scale) {
-  if (outlier_scale <= 0) return VecX::Ones(residuals.size());
-  std::vector<double> sizes(static_cast<std::size_t>(residuals.size()));
-  VecX::Map(sizes.data(), residuals.size()) = residuals.cwiseAbs();
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  const double limit = outlier_scale * std::max(1e-6, 1.4826 * *middle);
-  return (1.0 - (residuals.array() / limit).square()).cwiseMax(0.0).square();
-}
-
 CompletedHead complete_head(const SurfaceSamples& samples, const RegionFit& seen,
                             const HeadPrior& prior, const JointCentreOptions& options) {
   constexpr double kWhole = 0.97, kPart = 0.85;  // of the directions off the neck

@@ -7,10 +7,6 @@ namespace coxa::motion {
 /// Axes of a head: columns x, y (superior), z (along the neck). Left-handed for left hips.
 Mat3 head_axes(const Vec3& neck, Side side);
 
-/// Tukey's weights of residuals about zero, cut off at `outlier_scale` robust standard deviations;
-/// 0: all one.
-VecX tukey_weights(const VecX& residuals, double outlier_scale);
-
 /// A femur whose head was completed where it is not in view.
 struct CompletedHead {
   SurfaceSamples samples;    ///< those given and the added ones

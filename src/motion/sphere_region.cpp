@@ -1,3 +1,4 @@
+#include "sphere_region.h"
 
 #include <coxa/core/error.h>
 #include <coxa/core/rng.h>

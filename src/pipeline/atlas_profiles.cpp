@@ -150,11 +150,8 @@ void update_muscle_profiles(shape::Atlas& atlas, const std::vector<shape::Carrie
     model.profiles.clear();
     for (std::size_t c = 0; c < options.contrasts.size(); ++c) {
       std::vector<shape::ProfileExample> shown;
-      for (std::size_t h = 0; h < hips.size(); ++h) {
-        SimplexMesh mesh = model.hierarchy.levels.back();
-        mesh.points = make_simplex_mesh(hips[h].at(model.name)).points;
-        shown.push_back({&images[c][h], mesh.points, simplex_normals(mesh)});
-      }
+      for (std::size_t h = 0; h < hips.size(); ++h)
+        shown.push_back(shape::profile_example(model, hips[h].at(model.name), images[c][h]));
       model.profiles.push_back(shape::learn_profiles(shown, options.contrasts[c]));
     }
   }

@@ -16,6 +16,7 @@
 #include <span>
 
 #include "landmark_reach.h"
+#include "preparation.h"
 #include "result.h"
 #include "schedule.h"
 #include "stages.h"
@@ -31,22 +32,13 @@ Body placed_body(const shape::StructureModel& model, Points placed) {
   return body;
 }
 
-/// Lengths over which the unknown deformations of a bone are alike, mm, and how large they are
-/// beside what the examples leave of each other.
-constexpr double kLongLength = 60.0, kLongShare = 3.0;
-constexpr double kShortLength = 25.0, kShortShare = 1.0;
+/// The unknown deformations of a bone over long and short lengths, beside what the examples leave
+/// of each other.
+constexpr double kLongShare = 3.0, kShortShare = 1.0;
 
-/// What the examples do not show of a structure.
-Preparation prepared(const shape::StructureModel& model) {
-  const SimplexMesh& mesh = model.hierarchy.levels.back();
-  Preparation preparation;
-  for (const shape::ProfileSet& set : model.profiles)
-    preparation.kinds[set.contrast] = profile_kinds(set, mesh.neighbours);
+Preparation prepared_bone(const shape::StructureModel& model) {
   const double left = std::isnan(model.leave_one_out_error) ? 0.0 : model.leave_one_out_error;
-  preparation.smooth =
-      joined(smooth_modes(mesh.points, {.deviation = kLongShare * left, .length = kLongLength}),
-             smooth_modes(mesh.points, {.deviation = kShortShare * left, .length = kShortLength}));
-  return preparation;
+  return prepared(model, kLongShare * left, kShortShare * left);
 }
 
 /// Landmarks placed on slices are as exact as these are thin: borders are looked for at least this
@@ -94,7 +86,7 @@ Hip::Hip(std::vector<PreparedImage> images, const shape::Atlas& atlas,
     : images_(std::move(images)), atlas_(atlas), options_(options) {
   choose_models();
   for (std::size_t s = 0; s < models_.size(); ++s)
-    preparations_.push_back(is_bone(s) ? prepared(*models_[s]) : Preparation{});
+    preparations_.push_back(is_bone(s) ? prepared_bone(*models_[s]) : Preparation{});
   bodies_.resize(models_.size());
 }
 

@@ -1,11 +1,11 @@
 #include <coxa/segment/muscles.h>
 
-#include <coxa/core/parallel.h>
 #include <coxa/geom/thin_plate_spline.h>
 #include <coxa/segment/tissue_warp.h>
 
 #include <algorithm>
 
+#include "preparation.h"
 #include "schedule.h"
 #include "stages.h"
 
@@ -16,22 +16,10 @@ namespace {
 constexpr Index kControls = 250;
 /// mm, as the atlas was built.
 constexpr double kSmoothness = 20.0;
-/// Muscles differ more than few examples show: by this much, mm, over these lengths, mm.
-constexpr double kLongLength = 60.0, kLongDeviation = 5.0;
-constexpr double kShortLength = 25.0, kShortDeviation = 2.0;
+/// mm. Muscles differ more than few examples show: by this much over long and short lengths.
+constexpr double kLongDeviation = 5.0, kShortDeviation = 2.0;
 /// mm, of the places where the common displacement brings them.
 constexpr double kPlaceNoise = 2.0;
-
-Preparation prepared(const shape::StructureModel& model) {
-  const SimplexMesh& mesh = model.hierarchy.levels.back();
-  Preparation preparation;
-  for (const shape::ProfileSet& set : model.profiles)
-    preparation.kinds[set.contrast] = profile_kinds(set, mesh.neighbours);
-  preparation.smooth =
-      joined(smooth_modes(mesh.points, {.deviation = kLongDeviation, .length = kLongLength}),
-             smooth_modes(mesh.points, {.deviation = kShortDeviation, .length = kShortLength}));
-  return preparation;
-}
 
 /// Where the bones carry the muscles, all moved together to what looks like muscle in the first
 /// image.
@@ -66,11 +54,7 @@ Points carried_by_bones(const Points& points, const std::vector<FoundBone>& bone
     a.row(static_cast<Index>(i)) = from[i].transpose();
     b.row(static_cast<Index>(i)) = to[i].transpose();
   }
-  const ThinPlateSpline map(a, b, kSmoothness);
-  Points carried(points.rows(), 3);
-  parallel_for(points.rows(),
-               [&](Index v) { carried.row(v) = map(Vec3(points.row(v).transpose())).transpose(); });
-  return carried;
+  return ThinPlateSpline(a, b, kSmoothness)(points);
 }
 
 std::vector<Body> found_muscles(const std::vector<const shape::StructureModel*>& models,
@@ -80,7 +64,8 @@ std::vector<Body> found_muscles(const std::vector<const shape::StructureModel*>&
   std::vector<Points> placed =
       placed_muscles(models, bones, images.front(), part_of(monitor, "segment", 0.0, 0.3));
   std::vector<Preparation> preparations;
-  for (const shape::StructureModel* model : models) preparations.push_back(prepared(*model));
+  for (const shape::StructureModel* model : models)
+    preparations.push_back(prepared(*model, kLongDeviation, kShortDeviation));
   std::vector<Body> muscles(models.size());
   for (std::size_t m = 0; m < models.size(); ++m) {
     muscles[m].model = models[m];

@@ -62,20 +62,23 @@ ProfileSet learn_profiles(const std::vector<ProfileExample>& examples, const std
   return set;
 }
 
+ProfileExample profile_example(const StructureModel& model, const TriMesh& surface,
+                               const Volume& image) {
+  SimplexMesh mesh = model.hierarchy.levels.back();
+  require(surface.triangles == mesh.faces_of, "the ", model.name,
+          " of a hip has other triangles than the atlas");
+  mesh.points = make_simplex_mesh(surface).points;
+  return {&image, mesh.points, simplex_normals(mesh)};
+}
+
 void update_profiles(Atlas& atlas, const std::vector<ImagedHip>& hips,
                      const ProfileOptions& options) {
   for (StructureModel& model : atlas.structures) {
     if (model.muscle) continue;
-    const SimplexMesh& finest = model.hierarchy.levels.back();
     std::map<std::string, std::vector<ProfileExample>> by_contrast;
-    for (const ImagedHip& hip : hips) {
-      SimplexMesh mesh = finest;
-      const TriMesh& surface = hip.surfaces->at(model.name);
-      require(surface.triangles == finest.faces_of, "the ", model.name,
-              " of a hip has other triangles than the atlas");
-      mesh.points = make_simplex_mesh(surface).points;
-      by_contrast[hip.contrast].push_back({hip.image, mesh.points, simplex_normals(mesh)});
-    }
+    for (const ImagedHip& hip : hips)
+      by_contrast[hip.contrast].push_back(
+          profile_example(model, hip.surfaces->at(model.name), *hip.image));
     model.profiles.clear();
     for (const auto& [contrast, list] : by_contrast)
       model.profiles.push_back(learn_profiles(list, contrast, options));

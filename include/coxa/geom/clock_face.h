@@ -23,7 +23,8 @@ struct ClockFace {
     return 12.0 * (turn < 0.0 ? turn + 1.0 : turn);
   }
   /// Hour rounded to 0..11 (0 is twelve o'clock): sector h reaches half an hour to both sides.
-  int sector(const Vec3& p) const { return static_cast<int>(std::lround(hour(p))) % 12; }
+  static int sector(double hour) { return static_cast<int>(std::lround(hour)) % 12; }
+  int sector(const Vec3& p) const { return sector(hour(p)); }
 };
 
 /// The clock face about `axis` (out of the socket) with twelve towards `superior`, three towards

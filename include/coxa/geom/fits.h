@@ -16,6 +16,10 @@ struct SphereFitOptions {
                                ///< deviations (4.7 usual)
 };
 
+/// Tukey's biweights of residuals about zero, cut off at `outlier_scale` robust standard deviations
+/// (median absolute residual over 0.6745); 0: all one.
+VecX tukey_weights(const VecX& residuals, double outlier_scale);
+
 /// Geometric least-squares sphere (Gauss-Newton from the algebraic fit), optionally robust.
 ///
 /// @param points n×3, n >= 4, not coplanar   @param weights n or empty (all one)

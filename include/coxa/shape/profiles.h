@@ -39,6 +39,12 @@ struct ImagedHip {
   const Volume* image = nullptr;  ///< in the same frame; both must outlive the call
 };
 
+/// The finest vertices of a structure where a surface in correspondence with the atlas has them.
+/// @param surface  triangle i is finest vertex i   @param image  must outlive the example
+/// @throws Error bad_input if the surface has other triangles than the atlas
+ProfileExample profile_example(const StructureModel& model, const TriMesh& surface,
+                               const Volume& image);
+
 /// Gives every structure of the atlas one profile set per class of images, in order of the names.
 void update_profiles(Atlas& atlas, const std::vector<ImagedHip>& hips,
                      const ProfileOptions& options = {});
