@@ -1,5 +1,5 @@
 # The targets of coxa; each does all the set-up it needs. See README.md.
-.PHONY: demo test build web verify bench docs clean deps configure check sanitize
+.PHONY: demo tutorial test build web verify bench docs clean deps configure check sanitize
 
 BUILD  := build/release
 STRICT := $(if $(CI),ON,OFF)
@@ -24,10 +24,15 @@ build: configure web
 demo: build
 	@tools/demo.sh
 
+# Runs the commands of docs/tutorial.md as they stand there.
+tutorial: build
+	@tools/run_tutorial.py $(BUILD)/coxa build/tutorial
+
 # Everything fast: format, layers, unit tests, the browser application in chromium, some of the sanitizers.
 test: check web
 	@cmake --build $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure --timeout 600 -j 2
+	@tools/run_tutorial.py $(BUILD)/coxa build/tutorial
 	@tools/test_web.sh $(BUILD)
 	@tools/sanitize.sh $(SANITIZED_FAST)
 

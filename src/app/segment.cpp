@@ -11,6 +11,7 @@ struct SegmentArguments {
   std::vector<std::string> images;
   std::string series, side, landmarks, structures = "bones,cartilage", atlas, contrast, pins, out;
   double landmark_error = segment::SegmentOptions{}.landmark_error, pin_weight = 1.0;
+  bool resume = false;
 };
 
 std::vector<std::string> structures_from(const std::string& list) {
@@ -47,8 +48,8 @@ void run_segment(const SegmentArguments& arguments, Context& context) {
   request.pin_weight = arguments.pin_weight;
   request.options.landmark_error = arguments.landmark_error;
   if (!arguments.contrast.empty()) request.options.contrast = arguments.contrast;
-  const auto record = pipeline::run_segment_stage(request, arguments.out, pipeline::Reuse::never,
-                                                  context.monitor());
+  const auto reuse = arguments.resume ? pipeline::Reuse::if_unchanged : pipeline::Reuse::never;
+  const auto record = pipeline::run_segment_stage(request, arguments.out, reuse, context.monitor());
   context.print_result(arguments.out, record);
 }
 
@@ -84,6 +85,8 @@ void add_segment(CLI::App& app, Context& context) {
   verb->add_option("--atlas", arguments->atlas, "atlas file; the shipped one where not given")
       ->check(CLI::ExistingFile);
   verb->add_option("--out", arguments->out, "folder of the result")->required();
+  verb->add_flag("--resume", arguments->resume,
+                 "keep what an earlier call found there in the same images; pins are set on it");
   verb->callback([arguments, &context] { run_segment(*arguments, context); });
 }
 
