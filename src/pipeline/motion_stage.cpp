@@ -158,7 +158,7 @@ motion::TrackedRecording track_markers(const TrackInputs& inputs, const Monitor&
 }
 
 fs::path movement_file(const std::string& pattern) {
-  if (fs::exists(pattern)) return pattern;
+  if (fs::is_regular_file(pattern)) return pattern;
   const fs::path folder = shipped_data("movements");
   const fs::path shipped = folder / (pattern + ".toml");
   if (fs::exists(shipped)) return shipped;

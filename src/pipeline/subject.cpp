@@ -50,6 +50,8 @@ MotionEntry read_motion(const io::Table& root) {
   require(table.has_value(), root.where("motion"), " is needed: a table with a pattern or markers");
   MotionEntry motion;
   motion.pattern = table->value_or<std::string>("pattern", "");
+  if (const auto file = table->find_path("pattern"); file && fs::is_regular_file(*file))
+    motion.pattern = file->string();
   if (const auto markers = table->find_path("markers"))
     motion.markers = existing(*table, "markers", markers);
   if (const auto config = table->find_path("config"))

@@ -46,6 +46,15 @@ TEST_F(SubjectFile, GivesItsValuesAndDefaults) {
   EXPECT_DOUBLE_EQ(s.joint.poisson_ratio, 0.42);
   EXPECT_EQ(s.joint.loading, Loading::joint_force);
 }
+TEST_F(SubjectFile, FindsAMovementFileBesideItAndNeverTakesAFolderForOne) {
+  fs::create_directory(folder_ / "flexion");
+  EXPECT_EQ(read(good_).motion.pattern, "flexion");
+  io::write_bytes(folder_ / "mine.toml", "movement");
+  EXPECT_EQ(
+      read("side = \"left\"\n[image]\npath = \"t1.nii.gz\"\n[motion]\npattern = \"mine.toml\"\n")
+          .motion.pattern,
+      (folder_ / "mine.toml").string());
+}
 TEST_F(SubjectFile, NamesItsPins) {
   EXPECT_EQ(read(good_).pins, fs::path());
   EXPECT_EQ(read(good_ + "[pins]\npath = \"places.mrk.json\"\n").pins, folder_ / "places.mrk.json");
