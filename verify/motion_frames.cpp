@@ -57,31 +57,6 @@ motion::FrameLandmarks pelvis_landmarks(const fs::path& subject) {
   return landmarks;
 }
 
-// Epicondyles of a whole femur: the outermost points of its lower end across the line of the
-// posterior condyles; where an epicondyle is flat, the middle of what lies within 3 mm.
-motion::FrameLandmarks knee_landmarks(const TriMesh& femur, const Vec3& centre, Side side) {
-  const double lowest = femur.points.col(2).minCoeff();
-  const Points low = rows_where(femur.points, [&](const Vec3& p) { return p.z() < lowest + 60; });
-  const Vec3 middle = low.colwise().mean();
-  const Vec3 y = (centre - middle).normalized();
-  Vec3 lateral = side == Side::right ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitX());
-  for (int round = 0; round < 20; ++round) {
-    lateral = (lateral - lateral.dot(y) * y).normalized();
-    const Vec3 posterior = side == Side::right ? lateral.cross(y) : y.cross(lateral);
-    const auto condyle = [&](double sign) {
-      return farthest(
-          rows_where(low, [&](const Vec3& p) { return sign * (p - middle).dot(lateral) > 8.0; }),
-          posterior, 0.3);
-    };
-    lateral = condyle(1.0) - condyle(-1.0);
-  }
-  lateral = (lateral - lateral.dot(y) * y).normalized();
-  motion::FrameLandmarks landmarks;
-  landmarks.points["lateral_epicondyle"] = farthest(low, lateral, 3.0);
-  landmarks.points["medial_epicondyle"] = farthest(low, -lateral, 3.0);
-  return landmarks;
-}
-
 // what a hip MRI shows: a box about the joint, mm
 SurfaceSet cropped(const SurfaceSet& hip, const Vec3& c, double up, double down, double around) {
   SurfaceSet seen;
@@ -131,8 +106,6 @@ void print_frames(const fs::path& shared, const fs::path& atlas_file) {
       femur["femur"] = hip["femur"];
       const Vec3 c = motion::find_joint_centre(femur, {.congruency_samples = 0}).chosen.centre;
       motion::FrameLandmarks all = pelvis;
-      for (const auto& [name, p] : knee_landmarks(hip["femur"].mesh, c, side).points)
-        all.points[name] = p;
       const motion::BoneFrames truth = motion::make_bone_frames(hip, all, c, side);
       for (const View& view : kViews) {
         // the bow of the other person's femora, with all of the shaft in view

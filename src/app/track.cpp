@@ -68,9 +68,10 @@ void run_track(const TrackArguments& arguments, Context& context) {
     io::write_residuals(partial / (io::stem_of(out) + "_residuals.csv"), tracked.result);
     io::write_bytes(partial / (io::stem_of(out) + "_angles.svg"),
                     view::line_plot_svg(pipeline::angle_plot(tracked.result.motion)));
-    if (!tracked.cleaned.markers.events.empty())
-      io::write_events(partial / (io::stem_of(out) + "_events.csv"),
-                       tracked.cleaned.markers.events);
+    if (!tracked.centres.empty())
+      io::write_joint_centres(partial / (io::stem_of(out) + "_centres.csv"), tracked.centres);
+    if (!tracked.events.empty())
+      io::write_events(partial / (io::stem_of(out) + "_events.csv"), tracked.events);
     add_figures(tracked, record);
     for (const std::string& text : record.warnings) monitor.warn(text);
   };

@@ -140,6 +140,18 @@ void write_residuals(const std::filesystem::path& path, const motion::TrackResul
   write_bytes(path, text.str());
 }
 
+void write_joint_centres(const std::filesystem::path& path,
+                         const std::vector<motion::JointCentre>& centres) {
+  std::ostringstream text;
+  text << "definition,x_mm,y_mm,z_mm,radius_mm,rms_mm,covered_share,interval_mm,region\n";
+  for (const motion::JointCentre& c : centres) {
+    text << c.definition << ',' << c.centre.x() << ',' << c.centre.y() << ',' << c.centre.z() << ','
+         << c.radius << ',' << c.rms << ',' << c.covered_share << ',' << c.interval << ",\""
+         << c.region << "\"\n";
+  }
+  write_bytes(path, text.str());
+}
+
 void write_events(const std::filesystem::path& path,
                   const std::vector<motion::MarkerEvent>& events) {
   const auto cell = [](std::string words) {
@@ -152,9 +164,10 @@ void write_events(const std::filesystem::path& path,
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& a, const auto& b) { return a.time < b.time; });
   std::ostringstream text;
-  text << std::setprecision(10) << "time_s,label,context\n";
+  text << std::setprecision(10) << "time_s,label,context,source\n";
   for (const motion::MarkerEvent& event : sorted)
-    text << event.time << "," << cell(event.label) << "," << cell(event.context) << "\n";
+    text << event.time << "," << cell(event.label) << "," << cell(event.context) << ","
+         << cell(event.source) << "\n";
   write_bytes(path, text.str());
 }
 

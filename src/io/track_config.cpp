@@ -32,13 +32,15 @@ std::map<std::string, Vec3> read_positions(const Table& table) {
   return positions;
 }
 
-CentreSource read_centre_source(const Table& table) {
-  const auto text = table.value_or<std::string>("joint_centre", "harrington");
-  if (text == "harrington") return CentreSource::harrington;
-  if (text == "bell") return CentreSource::bell;
-  if (text == "score") return CentreSource::score;
-  require(text == "functional_sphere", table.where("joint_centre"),
-          " must be harrington, bell, score or functional_sphere, got '", text, "'");
+std::optional<CentreSource> read_centre_source(const Table& table) {
+  const auto text = table.find<std::string>("joint_centre");
+  if (!text) return std::nullopt;
+  if (*text == "surfaces") return CentreSource::surfaces;
+  if (*text == "harrington") return CentreSource::harrington;
+  if (*text == "bell") return CentreSource::bell;
+  if (*text == "score") return CentreSource::score;
+  require(*text == "functional_sphere", table.where("joint_centre"),
+          " must be surfaces, harrington, bell, score or functional_sphere, got '", *text, "'");
   return CentreSource::functional_sphere;
 }
 

@@ -13,11 +13,18 @@
 namespace coxa::motion {
 namespace {
 
+using LandmarkPoints = std::map<std::string, Vec3>;
+
+// of one coordinate of an epicondyle found on a surface: where it is flat it may lie anywhere there
+constexpr double kFoundSd = 3.0;  // mm
+
+std::string suffix(Side side) { return side == Side::right ? "_right" : "_left"; }
+
 // a landmark of one side: NAME_SIDE, or NAME alone for the hip's own side
 std::optional<Vec3> landmark(const FrameLandmarks& landmarks, const std::string& name, Side of,
                              Side hip) {
-  const auto with_side = landmarks.points.find(name + (of == Side::right ? "_right" : "_left"));
-  if (with_side != landmarks.points.end()) return with_side->second;
+  const auto known = landmarks.points.find(name + suffix(of));
+  if (known != landmarks.points.end()) return known->second;
   const auto alone = landmarks.points.find(name);
   if (of == hip && alone != landmarks.points.end()) return alone->second;
   return std::nullopt;
@@ -94,7 +101,7 @@ BoneFrame shaft_and_neck_frame(const TriMesh& femur, const Vec3& centre, Side si
 
 BoneFrame femur_frame(const SurfaceSet& surfaces, const FrameLandmarks& landmarks,
                       const Vec3& centre, Side side, const BoneFrameOptions& options,
-                      std::vector<std::string>& warnings) {
+                      LandmarkPoints& used, std::vector<std::string>& warnings) {
   const auto medial = landmark(landmarks, "medial_epicondyle", side, side);
   const auto lateral = landmark(landmarks, "lateral_epicondyle", side, side);
   BoneFrame frame;
@@ -105,7 +112,17 @@ BoneFrame femur_frame(const SurfaceSet& surfaces, const FrameLandmarks& landmark
     return frame;
   }
   const auto femur = surfaces.find("femur");
-  if (femur != surfaces.end() && !femur->second.mesh.empty()) {
+  const bool there = femur != surfaces.end() && !femur->second.mesh.empty();
+  if (const auto found =
+          there ? find_epicondyles(femur->second.mesh, centre, side) : std::nullopt) {
+    frame.X_IB.R = femur_axes(centre, found->medial, found->lateral, side);
+    frame.source = "epicondyles found on the surface";
+    frame.interval = axis_interval(kFoundSd, (found->medial - found->lateral).norm());
+    used["medial_epicondyle" + suffix(side)] = found->medial;
+    used["lateral_epicondyle" + suffix(side)] = found->lateral;
+    return frame;
+  }
+  if (there) {
     try {
       return shaft_and_neck_frame(femur->second.mesh, centre, side, options);
     } catch (const Error& error) {
@@ -151,7 +168,14 @@ BoneFrames make_bone_frames(const SurfaceSet& surfaces, const FrameLandmarks& la
   require(options.femur_length > 0, "femur_length must be above 0 mm, got ", options.femur_length);
   BoneFrames frames;
   frames.pelvis = pelvis_frame(landmarks, side, options);
-  frames.femur = femur_frame(surfaces, landmarks, joint_centre, side, options, frames.warnings);
+  for (const char* name : {"asis", "psis", "medial_epicondyle", "lateral_epicondyle"}) {
+    for (const Side of : {Side::left, Side::right}) {
+      if (const auto p = landmark(landmarks, name, of, side))
+        frames.landmarks[name + suffix(of)] = *p;
+    }
+  }
+  frames.femur = femur_frame(surfaces, landmarks, joint_centre, side, options, frames.landmarks,
+                             frames.warnings);
   frames.pelvis.X_IB.p = joint_centre;
   frames.femur.X_IB.p = joint_centre;
   const double up = frames.pelvis.X_IB.R.col(1).dot(frames.femur.X_IB.R.col(1));

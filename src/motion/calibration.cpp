@@ -89,7 +89,21 @@ LabelledPoints mean_positions(const MarkerData& markers, const PelvisMarkers& pe
   return sums;
 }
 
-// estimates of the joint centre from regression and, where the movement allows it, from function
+// the pelvis markers as the landmarks they stand on
+LabelledPoints in_house_names(const LabelledPoints& means, const PelvisMarkers& pelvis) {
+  LabelledPoints landmarks = {{"asis_right", means.at(pelvis.asis_right)},
+                              {"asis_left", means.at(pelvis.asis_left)}};
+  if (pelvis.back.size() == 1) {
+    landmarks["mid_psis"] = means.at(pelvis.back.front());
+  } else {
+    landmarks["psis_right"] = means.at(pelvis.back[0]);
+    landmarks["psis_left"] = means.at(pelvis.back[1]);
+  }
+  return landmarks;
+}
+
+// estimates of the joint centre from the image, from regression and, where the movement allows it,
+// from function
 std::vector<JointCentre> estimate_centres(const MarkerData& markers, const PelvisMarkers& pelvis,
                                           const LabelledPoints& means,
                                           const std::vector<std::string>& thigh,
@@ -121,6 +135,10 @@ std::vector<JointCentre> estimate_centres(const MarkerData& markers, const Pelvi
     X_PP.push_back({});
     X_PF.push_back(fit_rigid(x, y));
   }
+  if (options.image) {
+    centres.insert(centres.begin(), registered_centre(*options.image, in_house_names(means, pelvis),
+                                                      options.marker_sd));
+  }
   try {
     if (X_PF.size() >= 10) centres.push_back(score_centre(X_PP, X_PF));
     centres.push_back(sphere_centre(in_pelvis));
@@ -132,6 +150,8 @@ std::vector<JointCentre> estimate_centres(const MarkerData& markers, const Pelvi
 
 const char* definition_of(CentreSource source) {
   switch (source) {
+    case CentreSource::surfaces:
+      return "surfaces";
     case CentreSource::harrington:
       return "harrington";
     case CentreSource::bell:
@@ -153,7 +173,8 @@ JointCentre chosen_centre(const std::vector<JointCentre>& centres,
     given.interval = 1.96 * options.joint_centre_sd;
     return given;
   }
-  const char* wanted = definition_of(options.centre);
+  const char* wanted = definition_of(
+      options.centre.value_or(options.image ? CentreSource::surfaces : CentreSource::harrington));
   const auto it = std::find_if(centres.begin(), centres.end(),
                                [&](const JointCentre& c) { return c.definition == wanted; });
   require(it != centres.end(), "no joint centre by '", wanted, "' from this recording");

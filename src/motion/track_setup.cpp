@@ -1,6 +1,7 @@
 #include <coxa/motion/track_setup.h>
 
 #include <coxa/core/error.h>
+#include <coxa/motion/gait_events.h>
 
 namespace coxa::motion {
 namespace {
@@ -52,6 +53,9 @@ TrackedRecording track_recording(const MarkerData& markers, const MarkerData* ne
                          labels_of(outcome.model.thigh_markers)};
   }
   outcome.cleaned = clean_markers(recording, cleaning);
+  outcome.events = recording.events;
+  const FoundEvents found = find_gait_events(outcome.cleaned.markers);
+  outcome.events.insert(outcome.events.end(), found.events.begin(), found.events.end());
 
   // the calibration frame is counted in the whole recording: it moves with the part that is tracked
   const Index end = setup.end_frame.value_or(recording.n_frames());

@@ -137,14 +137,11 @@ CompletedBone complete_bone(const TriMesh& seen, const shape::StructureModel& mo
 }
 
 motion::FrameLandmarks completed_pelvis_landmarks(const CompletedBone& hip_bone, Side side) {
-  // of one coordinate of a completed landmark, by which the frame's interval is made:
-  // docs/motion.md
-  constexpr double kLandmarkSd = 6.0;  // mm
   const Vec3 n = hip_bone.leftward;
   const double sign = side == Side::right ? 1.0 : -1.0;
   // the median plane touches the bone at the symphysis
   const double middle = sign * (sign * (hip_bone.surface.points * n)).maxCoeff();
-  motion::FrameLandmarks completed{{}, "shape model completion", kLandmarkSd};
+  motion::FrameLandmarks completed{{}, "shape model completion", kCompletedLandmarkSd};
   for (const std::string name : {"asis", "psis"}) {
     const auto it = hip_bone.landmarks.find(name);
     require(it != hip_bone.landmarks.end(), "the atlas does not know the landmark ", name);
@@ -172,8 +169,10 @@ motion::BoneFrames make_completed_frames(const SurfaceSet& surfaces,
   };
   SurfaceSet whole = surfaces;
   bool femur_is_completed = false;
+  const TriMesh* femur_seen = find_mesh(surfaces, "femur");
   const bool knee_is_known =
-      has(landmarks, "medial_epicondyle", side) && has(landmarks, "lateral_epicondyle", side);
+      (has(landmarks, "medial_epicondyle", side) && has(landmarks, "lateral_epicondyle", side)) ||
+      (femur_seen && motion::find_epicondyles(*femur_seen, joint_centre, side));
   if (!knee_is_known) {
     if (const auto femur = completed("femur")) {
       whole["femur"].mesh = femur->surface;
@@ -185,9 +184,15 @@ motion::BoneFrames make_completed_frames(const SurfaceSet& surfaces,
   if (femur_is_completed) frames.femur.source = "shape model completion, " + frames.femur.source;
   if (!pelvis_is_known(landmarks)) {
     if (const auto bone = completed("hip_bone")) {
-      frames.pelvis = motion::make_bone_frames(whole, completed_pelvis_landmarks(*bone, side),
-                                               joint_centre, side)
-                          .pelvis;
+      motion::FrameLandmarks found = completed_pelvis_landmarks(*bone, side);
+      for (auto& [name, p] : found.points) {
+        const auto given = frames.landmarks.find(name);
+        if (given == frames.landmarks.end()) continue;
+        p = given->second;
+        found.source = "landmarks and shape model completion";
+      }
+      frames.pelvis = motion::make_bone_frames({}, found, joint_centre, side).pelvis;
+      for (const auto& [name, p] : found.points) frames.landmarks[name] = p;
     }
   }
   frames.warnings.insert(frames.warnings.end(), warnings.begin(), warnings.end());

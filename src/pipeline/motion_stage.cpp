@@ -56,6 +56,8 @@ Record wanted_record(const Subject& subject, const fs::path& segment_folder) {
   record.inputs["segment"] = record_key(read_record(segment_folder / "segment.json"));
   if (!subject.landmarks.empty())
     record.inputs["landmarks"] = io::sha256_of_path(subject.landmarks);
+  if (!subject.motion.landmarks.empty())
+    record.inputs["frame_landmarks"] = io::sha256_of_path(subject.motion.landmarks);
   record.inputs["atlas"] = io::sha256_of_path(subject.atlas);
   if (subject.motion.from) record.options["from_s"] = *subject.motion.from;
   if (subject.motion.to) record.options["to_s"] = *subject.motion.to;
@@ -96,15 +98,37 @@ motion::HipMotion thinned(const motion::HipMotion& all, const MotionEntry& entry
   return few;
 }
 
+// what the surfaces tell the calibration of a recording; nullopt where too few pelvis landmarks are
+// known to lay the image on the markers
+std::optional<motion::ImagedPelvis> imaged_pelvis(const motion::JointCentre& centre,
+                                                  const motion::BoneFrames& frames) {
+  motion::ImagedPelvis image{.joint_centre = centre.centre,
+                             .joint_centre_sd = centre.interval / 1.96};
+  for (const auto& [name, p] : frames.landmarks) {
+    if (name.starts_with("asis") || name.starts_with("psis")) image.landmarks[name] = p;
+  }
+  if (image.landmarks.size() < 3) return std::nullopt;
+  if (frames.pelvis.source.find("completion") != std::string::npos)
+    image.landmark_sd = kCompletedLandmarkSd;
+  return image;
+}
+
 motion::HipMotion make_motion(const Subject& subject, const fs::path& folder,
-                              const Monitor& monitor) {
+                              const motion::JointCentre& centre, const motion::BoneFrames& frames,
+                              Record& record, const Monitor& monitor) {
   if (!subject.motion.pattern.empty()) {
     const auto pattern = io::read_pattern(movement_file(subject.motion.pattern));
     return motion::make_movement(pattern, subject.side, {.n_frames = subject.motion.frames});
   }
-  const motion::TrackedRecording tracked = track_markers(
-      {.markers = subject.motion.markers, .config = subject.motion.config, .side = subject.side},
-      monitor);
+  const motion::TrackedRecording tracked = track_markers({.markers = subject.motion.markers,
+                                                          .config = subject.motion.config,
+                                                          .side = subject.side,
+                                                          .image = imaged_pelvis(centre, frames)},
+                                                         monitor);
+  record.figures["tracked_about"] = tracked.model.source;
+  if (!tracked.centres.empty())
+    io::write_joint_centres(folder / "joint_centres_of_markers.csv", tracked.centres);
+  if (!tracked.events.empty()) io::write_events(folder / "events.csv", tracked.events);
   io::write_motion(folder / "tracked.csv", tracked.result.motion);
   io::write_residuals(folder / "residuals.csv", tracked.result);
   return thinned(tracked.result.motion, subject.motion);
@@ -123,17 +147,6 @@ void add_figures(const motion::JointCentreResult& centre, const motion::BoneFram
   record.figures["femur_frame_interval_deg"] = degrees(frames.femur.interval);
 }
 
-void write_centres(const fs::path& path, const motion::JointCentreResult& result) {
-  std::string text =
-      "definition,x_mm,y_mm,z_mm,radius_mm,rms_mm,covered_share,interval_mm,region\n";
-  for (const motion::JointCentre& c : result.all) {
-    text += join_text(c.definition, ',', c.centre.x(), ',', c.centre.y(), ',', c.centre.z(), ',',
-                      c.radius, ',', c.rms, ',', c.covered_share, ',', c.interval, ",\"", c.region,
-                      "\"\n");
-  }
-  io::write_bytes(path, text);
-}
-
 }  // namespace
 
 motion::TrackedRecording track_markers(const TrackInputs& inputs, const Monitor& monitor) {
@@ -149,6 +162,7 @@ motion::TrackedRecording track_markers(const TrackInputs& inputs, const Monitor&
           (inputs.model.empty() ? inputs.config : inputs.model).string(), " is for the ",
           setup.setup.side == Side::left ? "left" : "right",
           " hip, the subject file for the other");
+  setup.setup.calibration.image = inputs.image;
   const motion::MarkerData recording = io::read_markers(inputs.markers);
   for (const std::string& text : recording.warnings) monitor.warn(text);
   if (!setup.neutral_trial)
@@ -180,16 +194,23 @@ Record run_motion_stage(const Subject& subject, const fs::path& segment_folder,
         motion::find_joint_centre(surfaces, joint_centre_options(subject.side), monitor);
     motion::FrameLandmarks landmarks;
     if (!subject.landmarks.empty()) landmarks.points = io::read_landmarks(subject.landmarks);
+    if (!subject.motion.landmarks.empty()) {
+      for (const auto& [name, p] : io::read_landmarks(subject.motion.landmarks))
+        landmarks.points[name] = p;
+    }
     const auto frames = make_completed_frames(surfaces, landmarks, io::read_atlas(subject.atlas),
                                               centre.chosen.centre, subject.side);
     monitor.progress("motion", 0.3);
-    const motion::HipMotion motion = make_motion(subject, partial, monitor);
+    const motion::HipMotion motion =
+        make_motion(subject, partial, centre.chosen, frames, record, monitor);
     io::write_motion(partial / "motion.csv", motion);
     io::write_opensim_motion(partial / "motion.mot", motion, subject.side);
     io::write_bytes(
         partial / "frames.json",
         Json{{"pelvis", as_json(frames.pelvis)}, {"femur", as_json(frames.femur)}}.dump(2) + "\n");
-    write_centres(partial / "joint_centres.csv", centre);
+    io::write_joint_centres(partial / "joint_centres.csv", centre.all);
+    if (!frames.landmarks.empty())
+      io::write_landmarks(partial / "frame_landmarks.mrk.json", frames.landmarks);
     view::write_png(partial / "frames.png", draw_bone_frames(surfaces, frames, subject.side));
     add_figures(centre, frames, record);
     for (const auto* list : {&centre.warnings, &frames.warnings, &motion.warnings}) {

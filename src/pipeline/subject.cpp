@@ -56,6 +56,8 @@ MotionEntry read_motion(const io::Table& root) {
     motion.markers = existing(*table, "markers", markers);
   if (const auto config = table->find_path("config"))
     motion.config = existing(*table, "config", config);
+  if (const auto landmarks = table->find_path("landmarks"))
+    motion.landmarks = existing(*table, "landmarks", landmarks);
   motion.frames = table->value_or<Index>("frames", motion.frames);
   motion.from = table->find<double>("from_s");
   motion.to = table->find<double>("to_s");

@@ -111,7 +111,8 @@ TEST_F(MotionFiles, EventsAreWrittenInTheOrderOfTime) {
   write_events(folder_ / "e.csv",
                {{"Foot Off", "Right", 1.25}, {"Foot Strike, first", "Left", 0.5}});
   EXPECT_EQ(read_bytes(folder_ / "e.csv"),
-            "time_s,label,context\n0.5,Foot Strike  first,Left\n1.25,Foot Off,Right\n");
+            "time_s,label,context,source\n0.5,Foot Strike  first,Left,recording\n"
+            "1.25,Foot Off,Right,recording\n");
 }
 TEST_F(MotionFiles, GaitRepeatsAfterItsCycle) {
   const auto pattern = read_pattern(fs::path(COXA_SOURCE_DIR) / "data" / "movements" / "gait.toml");

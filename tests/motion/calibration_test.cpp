@@ -69,6 +69,50 @@ TEST(Calibration, OffersEveryEstimateOfTheCentre) {
           .norm(),
       1e-12);
 }
+TEST(Calibration, PinsTheHeadWhereTheSurfacesHaveIt) {
+  const auto hip = standing_hip(Side::right);
+  CalibrationOptions options{.map = default_marker_map(Side::right)};
+  options.map[MarkerRole::thigh] = {"T#"};
+  // the image: the pelvis somewhere else, the joint centre known
+  const RigidTransform X_IP{rotation_from_vector(Vec3(0.3, -0.2, 0.9)), Vec3(12, -40, 300)};
+  ImagedPelvis image{.joint_centre = X_IP * hip.model.joint_centre_pelvis};
+  for (const auto& [name, label] : {std::pair{"asis_left", "LASI"},
+                                    {"asis_right", "RASI"},
+                                    {"psis_left", "LPSI"},
+                                    {"psis_right", "RPSI"}})
+    image.landmarks[name] = X_IP * hip.model.pelvis_markers.at(label);
+  options.image = image;
+  const auto calibration = calibrate(hip.markers, options);
+  ASSERT_EQ(calibration.centres.front().definition, "surfaces");
+  EXPECT_NE(calibration.model.source.find("surfaces"), std::string::npos);
+  // functional centres are exact here
+  const Vec3 truth = calibration.centres[3].centre;
+  EXPECT_LE((calibration.centres.front().centre - truth).norm(), 1e-3);
+  EXPECT_LE((calibration.model.joint_centre_pelvis - truth).norm(), 1e-3);
+  // a centre that is asked for wins
+  options.centre = CentreSource::bell;
+  EXPECT_NE(calibrate(hip.markers, options).model.source.find("bell"), std::string::npos);
+}
+TEST(Calibration, IntervalOfARegisteredCentreHoldsItsError) {
+  const std::map<std::string, Vec3> markers = {{"asis_left", Vec3(0, 0, -115)},
+                                               {"asis_right", Vec3(0, 0, 115)},
+                                               {"psis_left", Vec3(-150, 0, -45)},
+                                               {"psis_right", Vec3(-150, 0, 45)}};
+  const Vec3 centre(-45, -85, 88);
+  Rng rng(11);
+  double inside = 0.0;
+  constexpr int kDraws = 400;
+  for (int k = 0; k < kDraws; ++k) {
+    ImagedPelvis image{.landmarks = markers, .joint_centre = centre, .joint_centre_sd = 0.5};
+    for (auto& [name, p] : image.landmarks) p += 3.6 * rng.normal3();  // bone 2, skin 3 mm
+    const JointCentre found = registered_centre(image, markers, 3.0);
+    inside += ((found.centre - centre).cwiseAbs().array() <= found.interval).cast<double>().mean();
+  }
+  // made for the axis that is off most
+  EXPECT_GE(inside / kDraws, 0.95);
+  EXPECT_LE(inside / kDraws, 0.995);
+  EXPECT_THROW(registered_centre({.landmarks = {{"asis_left", centre}}}, markers, 3.0), Error);
+}
 TEST(Calibration, NamesTheRoleThatNoLabelFills) {
   auto hip = standing_hip(Side::right);
   hip.markers.labels[static_cast<std::size_t>(*find_marker(hip.markers, "RASI"))] = "something";

@@ -158,6 +158,53 @@ TEST(BoneFrames, SayWhereTheyComeFrom) {
   EXPECT_EQ(none.pelvis.source, "image axes");
   EXPECT_EQ(none.femur.source, "image axes");
 }
+// a head at the origin, a shaft, and a knee of two balls whose common axis is turned about the
+// shaft; vertices only, which is all the rule looks at
+TriMesh femur_with_knee(double turn, Side side) {
+  const double s = side == Side::right ? -1.0 : 1.0;
+  std::vector<Vec3> points;
+  for (double z = 0; z > -380; z -= 4) points.push_back({s * 20, 0, z});
+  const Vec3 lateral(s * std::cos(turn), std::sin(turn), 0);
+  for (const double end : {-1.0, 1.0}) {
+    for (int i = 0; i < 60; ++i) {
+      for (int j = 0; j <= 30; ++j) {
+        const double a = 2 * kPi * i / 60, b = kPi * j / 30;
+        points.push_back(
+            Vec3(s * 20, 0, -390) + end * 22 * lateral +
+            22 * Vec3(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), std::cos(b)));
+      }
+    }
+  }
+  TriMesh femur;
+  femur.points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t k = 0; k < points.size(); ++k)
+    femur.points.row(static_cast<Eigen::Index>(k)) = points[k];
+  femur.triangles.resize(1, 3);
+  femur.triangles << 0, 1, 2;
+  return femur;
+}
+TEST(BoneFrames, FindTheEpicondylesOfAWholeFemur) {
+  for (const Side side : {Side::left, Side::right}) {
+    const double turn = radians(12.0);
+    SurfaceSet surfaces;
+    surfaces["femur"].mesh = femur_with_knee(turn, side);
+    const auto found = find_epicondyles(surfaces["femur"].mesh, Vec3::Zero(), side);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR((found->lateral - found->medial).norm(), 88.0, 4.0);
+    const auto frames = make_bone_frames(surfaces, {}, Vec3::Zero(), side);
+    EXPECT_EQ(frames.femur.source, "epicondyles found on the surface");
+    EXPECT_EQ(frames.landmarks.count(side == Side::right ? "lateral_epicondyle_right"
+                                                         : "lateral_epicondyle_left"),
+              1U);
+    const Vec3 right =
+        side == Side::right ? found->lateral - found->medial : Vec3(found->medial - found->lateral);
+    EXPECT_GT(frames.femur.X_IB.R.col(2).dot(right.normalized()), 0.995);
+    EXPECT_NEAR(std::abs(frames.femur.X_IB.R(1, 2)), std::sin(turn), 0.02);
+  }
+  TriMesh cut = femur_with_knee(0.0, Side::right);
+  cut.points.col(2) = cut.points.col(2).cwiseMax(-250.0);
+  EXPECT_FALSE(find_epicondyles(cut, Vec3::Zero(), Side::right));
+}
 TEST(BoneFrames, RefuseLandmarksThatSpanNothing) {
   EXPECT_THROW(pelvis_axes(Vec3(0, 0, 0), Vec3(10, 0, 0), Vec3(0, 100, 0)), Error);
   EXPECT_THROW(pelvis_axes(Vec3(-120, 0, 0), Vec3(120, 0, 0), Vec3(0, 1, 0)), Error);

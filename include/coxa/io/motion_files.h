@@ -1,6 +1,7 @@
 #pragma once
 
 #include <coxa/motion/hip_motion.h>
+#include <coxa/motion/joint_centre.h>
 #include <coxa/motion/track.h>
 
 #include <filesystem>
@@ -28,7 +29,13 @@ void write_opensim_motion(const std::filesystem::path& path, const motion::HipMo
 /// Residuals as CSV: frame, time_s, then one column LABEL_mm per thigh marker.
 void write_residuals(const std::filesystem::path& path, const motion::TrackResult& result);
 
-/// What the laboratory marked in time, as CSV: time_s, label, context; in the order of time.
+/// Estimates of the joint centre side by side as CSV: definition, x_mm y_mm z_mm (in the frame they
+/// were made in), radius_mm, rms_mm, covered_share, interval_mm, region.
+void write_joint_centres(const std::filesystem::path& path,
+                         const std::vector<motion::JointCentre>& centres);
+
+/// What the laboratory marked in time and what was found, as CSV: time_s, label, context, source; in
+/// the order of time.
 void write_events(const std::filesystem::path& path,
                   const std::vector<motion::MarkerEvent>& events);
 

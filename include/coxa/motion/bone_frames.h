@@ -4,6 +4,7 @@
 #include <coxa/motion/hip_motion.h>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct BoneFrameOptions {
 };
 
 struct BoneFrames {
-  BoneFrame pelvis, femur;  ///< origins at the joint centre
+  BoneFrame pelvis, femur;                ///< origins at the joint centre
+  std::map<std::string, Vec3> landmarks;  ///< those the frames stand on, with side, LPS mm
   std::vector<std::string> warnings;
 };
 
@@ -40,9 +42,9 @@ struct BoneFrames {
 ///
 /// Pelvis: both ASIS and one PSIS by ISB; else one side's ASIS and PSIS with the image's left-right
 /// axis; else the image's axes (x anterior, y superior, z right of a supine patient). Femur: both
-/// epicondyles by ISB; else the long axis from the shaft, extended to the knee, and the neck's axis
-/// turned back by the mean anteversion; else the image's axes. `source` says which, `interval` how
-/// far the axes may be off.
+/// epicondyles by ISB, given or found on the surface; else the long axis from the shaft, extended
+/// to the knee, and the neck's axis turned back by the mean anteversion; else the image's axes.
+/// `source` says which, `interval` how far the axes may be off.
 /// @param surfaces      femur is used when the epicondyles are not known
 /// @param joint_centre  LPS mm
 /// @throws Error bad_input when landmarks contradict each other (on one line, or right of left)
@@ -50,6 +52,15 @@ struct BoneFrames {
 BoneFrames make_bone_frames(const SurfaceSet& surfaces, const FrameLandmarks& landmarks,
                             const Vec3& joint_centre, Side side,
                             const BoneFrameOptions& options = {});
+
+/// LPS mm.
+struct Epicondyles {
+  Vec3 medial, lateral;
+};
+/// The epicondyles of a femur whose knee is in view: the outermost places of its lower 60 mm across
+/// the line of the posterior condyles. nullopt where the surface ends above the knee.
+std::optional<Epicondyles> find_epicondyles(const TriMesh& femur, const Vec3& joint_centre,
+                                            Side side);
 
 /// ISB axes from landmarks; columns x anterior, y superior, z right.
 Mat3 pelvis_axes(const Vec3& asis_right, const Vec3& asis_left, const Vec3& mid_psis);

@@ -10,14 +10,26 @@
 namespace coxa::motion {
 
 /// Where the joint centre of a calibration comes from.
-enum class CentreSource { harrington, bell, score, functional_sphere };
+enum class CentreSource { surfaces, harrington, bell, score, functional_sphere };
+
+/// What surfaces from an MRI without markers tell a calibration: the joint centre, and the pelvis
+/// landmarks by which the image is laid on the markers.
+struct ImagedPelvis {
+  std::map<std::string, Vec3> landmarks =
+      {};                    ///< asis_left, asis_right, psis_left, psis_right: image, LPS mm
+  double landmark_sd = 2.0;  ///< mm, of one coordinate of one landmark
+  Vec3 joint_centre = Vec3::Zero();  ///< LPS mm
+  double joint_centre_sd = 0.5;      ///< mm, per axis, in the image
+};
 
 struct CalibrationOptions {
   Side side = Side::right;
   MarkerMap map = {};                   ///< empty: default_marker_map(side)
   Index first_frame = 0;                ///< frames that calibrate: [first_frame, end_frame)
   std::optional<Index> end_frame = {};  ///< to the end of the recording when absent
-  CentreSource centre = CentreSource::harrington;
+  /// nullopt: the surfaces' where there is an image, else Harrington's
+  std::optional<CentreSource> centre = {};
+  std::optional<ImagedPelvis> image = {};
   std::optional<Vec3> joint_centre_pelvis =
       {};  ///< mm, pelvis ISB axes from mid-ASIS: wins over `centre` (an MRI's)
   double joint_centre_sd = 2.0;  ///< mm, of joint_centre_pelvis
@@ -52,6 +64,16 @@ struct Registration {
 /// @throws Error bad_input when fewer than three are common to both
 Registration register_image(const std::map<std::string, Vec3>& in_image,
                             const std::map<std::string, Vec3>& in_pelvis);
+
+/// The joint centre of an image in the pelvis ISB frame of the markers, definition "surfaces".
+///
+/// Its interval: the centre's own, and what the landmarks' errors on bone and skin (the larger of
+/// those stated and of those that the fit leaves) do to it through the rigid fit.
+/// @param in_pelvis as for `register_image`; with `mid_psis` in place of the PSIS where the markers
+///                  have a sacrum only
+/// @throws Error bad_input when fewer than three landmarks are common to both
+JointCentre registered_centre(const ImagedPelvis& image,
+                              const std::map<std::string, Vec3>& in_pelvis, double marker_sd);
 
 /// Positions of the pelvis landmarks of a model in its pelvis frame, by house name, for
 /// `register_image`.

@@ -10,9 +10,10 @@ namespace coxa::motion {
 
 /// Something the laboratory marked in time, for example a foot strike.
 struct MarkerEvent {
-  std::string label;    ///< for example "Foot Strike"
-  std::string context;  ///< for example "Right"; may be empty
-  double time = 0.0;    ///< s, on the recording's own clock
+  std::string label;                 ///< for example "Foot Strike"
+  std::string context;               ///< for example "Right"; may be empty
+  double time = 0.0;                 ///< s, on the recording's own clock
+  std::string source = "recording";  ///< or the rule by which it was found
 };
 
 /// Trajectories of skin markers in the laboratory frame.

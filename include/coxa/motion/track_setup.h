@@ -27,6 +27,7 @@ struct TrackedRecording {
   std::vector<JointCentre>
       centres;  ///< estimates of a calibration, pelvis frame; empty with a model given
   CleanedMarkers cleaned;
+  std::vector<MarkerEvent> events;  ///< the recording's own, then those of walking that are found
 };
 
 /// Renames, calibrates where no model is given, cleans, tracks.

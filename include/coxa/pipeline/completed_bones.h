@@ -30,6 +30,9 @@ motion::JointCentreOptions joint_centre_options(Side side);
 CompletedBone complete_bone(const TriMesh& seen, const shape::StructureModel& model,
                             const Vec3& head_centre, Side side);
 
+/// Standard deviation of one coordinate of a completed landmark; mm. docs/motion.md section 3.
+inline constexpr double kCompletedLandmarkSd = 6.0;
+
 /// ASIS and PSIS of both sides from one hip bone: its own by the shape model, the others mirrored
 /// at the median plane, which the model knows as the mean of its examples.
 motion::FrameLandmarks completed_pelvis_landmarks(const CompletedBone& hip_bone, Side side);

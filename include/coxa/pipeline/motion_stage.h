@@ -20,7 +20,8 @@ struct MotionArtefacts {
 };
 
 /// Joint centre and bone frames from the surfaces, and the femur's pose per frame, into `folder`:
-/// motion.csv, motion.mot, frames.json, joint_centres.csv and the record motion.json.
+/// motion.csv, motion.mot, frames.json, frame_landmarks.mrk.json, joint_centres.csv and the record
+/// motion.json.
 Record run_motion_stage(const Subject& subject, const std::filesystem::path& segment_folder,
                         const std::filesystem::path& folder, Reuse reuse, const Monitor& monitor);
 
@@ -34,6 +35,9 @@ struct TrackInputs {
                                       ///< their labels, and the recording's own frames calibrate
   std::filesystem::path model = {};   ///< hip model, JSON; wins over the configuration's; or empty
   std::optional<Side> side = {};  ///< what the configuration must be for; nullopt: whatever it says
+  /// Joint centre and landmarks of the patient's surfaces: where no hip model is given, the
+  /// calibration pins the head there, unless the configuration names another centre.
+  std::optional<motion::ImagedPelvis> image = {};
 };
 /// Reads a recording and tracks it as the configuration says.
 motion::TrackedRecording track_markers(const TrackInputs& inputs, const Monitor& monitor);

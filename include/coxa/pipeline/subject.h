@@ -23,6 +23,8 @@ struct MotionEntry {
       pattern;  ///< name of a movement in data/movements, or a movement file; empty: markers
   std::filesystem::path markers;  ///< C3D, TRC or CSV
   std::filesystem::path config;   ///< how the markers are to be read (docs/motion.md)
+  std::filesystem::path
+      landmarks;  ///< of the bones' frames, corrected by hand; they win over [landmarks]; or empty
   /// The part of a recording that is simulated, s; the whole trial is tracked all the same.
   std::optional<double> from, to;
   Index frames = 14;  ///< frames that are simulated, spread evenly over the movement, >= 2
