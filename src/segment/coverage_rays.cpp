@@ -29,11 +29,6 @@ constexpr double kLowestShare = 0.8, kHighestShare = 1.7, kShareStep = 1.06;
 // blurs are told apart in steps of this, mm
 constexpr double kBlurStep = 0.1;
 
-/// Half a voxel: a box of one and its linear interpolation have variance spacing²/4.
-double blur_along(const Volume& volume, const Vec3& normal) {
-  return 0.5 * volume.spacing.cwiseProduct(volume.direction.transpose() * normal).norm();
-}
-
 /// Brightnesses of the tissues as the profiles beneath the present layers show them.
 std::optional<TissueBrightness> first_brightness(const std::vector<CoverageRay>& rays,
                                                  std::size_t image) {
@@ -135,6 +130,10 @@ double likeliest_cartilage(const std::vector<CoverageRay>& telling, std::size_t 
 }
 
 }  // namespace
+
+double blur_along(const Volume& volume, const Vec3& normal) {
+  return 0.5 * volume.spacing.cwiseProduct(volume.direction.transpose() * normal).norm();
+}
 
 double quantile(std::vector<double> values, double share) {
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));

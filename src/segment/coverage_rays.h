@@ -29,6 +29,10 @@ std::vector<CoverageRay> coverage_rays(std::span<const HostPatch> patches,
 /// @returns the brightnesses, by image
 std::vector<TissueBrightness> update_fits(std::vector<CoverageRay>& rays, std::size_t n_images);
 
+/// Half a voxel along a unit normal, mm: a box of one and its linear interpolation have variance
+/// spacing²/4.
+double blur_along(const Volume& volume, const Vec3& normal);
+
 /// The value at a share of the sorted values. @param values not empty
 double quantile(std::vector<double> values, double share);
 

@@ -15,6 +15,7 @@
 #include <set>
 #include <span>
 
+#include "bone_border.h"
 #include "landmark_reach.h"
 #include "preparation.h"
 #include "result.h"
@@ -240,12 +241,25 @@ void Hip::segment_muscles(const Monitor& monitor) {
   for (std::size_t m = 0; m < muscles.size(); ++m) bodies_[numbers[m]] = std::move(muscles[m]);
 }
 
+void Hip::update_bones(std::vector<Surface>& surfaces) const {
+  std::vector<BareBone> bones;
+  for (std::size_t s = 0; s < bodies_.size(); ++s) {
+    if (!is_bone(s)) continue;
+    bones.push_back({&surfaces[s].mesh, {}});
+    for (std::size_t l = 0; l < bodies_.size(); ++l) {
+      if (hosts_[l] == s) bones.back().layers.push_back(&surfaces[l].mesh);
+    }
+  }
+  update_borders(bones, images_);
+}
+
 std::vector<Surface> Hip::surfaces(std::vector<std::string>& warnings) const {
   std::vector<Surface> surfaces;
   for (const Body& body : bodies_) surfaces.push_back(surface_of(body));
   std::vector<ExtentLayer> sided;
   std::vector<std::string> names;
   std::vector<LaidLayer> layers;
+  update_bones(surfaces);
   for (std::size_t s = 0; s < bodies_.size(); ++s) {
     if (!hosts_[s]) continue;
     TriMesh *layer = &surfaces[s].mesh, *host = &surfaces[*hosts_[s]].mesh;
