@@ -86,8 +86,9 @@ void print_frames(const fs::path& shared, const fs::path& atlas_file) {
             atlas_file.string(), " was made from ", name, " too");
   }
   std::printf(
-      "| bone | in view | x anterior | y superior | z right | interval | source |\n"
-      "|---|---|---|---|---|---|---|\n");
+      "| bone | in view | x anterior | y superior | z right | interval | against the same rule on "
+      "the whole bone | source |\n"
+      "|---|---|---|---|---|---|---|---|\n");
   struct View {
     const char* name;
     double up, down, around;
@@ -107,17 +108,20 @@ void print_frames(const fs::path& shared, const fs::path& atlas_file) {
       const Vec3 c = motion::find_joint_centre(femur, {.congruency_samples = 0}).chosen.centre;
       motion::FrameLandmarks all = pelvis;
       const motion::BoneFrames truth = motion::make_bone_frames(hip, all, c, side);
+      const motion::BoneFrames uncut = pipeline::make_completed_frames(hip, {}, atlas, c, side);
       for (const View& view : kViews) {
         // the bow of the other person's femora, with all of the shaft in view
         const motion::BoneFrameOptions options{
             .mean_bow = radians(std::string(subject) == "vhf" ? kBowOfVhm : kBowOfVhf)};
         const auto found = pipeline::make_completed_frames(
             cropped(hip, c, view.up, view.down, view.around), {}, atlas, c, side, options);
-        for (const auto& [bone, a, b] : {std::tuple{"pelvis", &truth.pelvis, &found.pelvis},
-                                         std::tuple{"femur", &truth.femur, &found.femur}}) {
-          const Vec3 t = turn(a->X_IB.R, b->X_IB.R);
-          std::printf("| %s %s %s | %s | %.1f | %.1f | %.1f | %.1f | %s |\n", subject, word, bone,
-                      view.name, t.x(), t.y(), t.z(), degrees(b->interval), b->source.c_str());
+        for (const auto& [bone, a, b, w] :
+             {std::tuple{"pelvis", &truth.pelvis, &found.pelvis, &uncut.pelvis},
+              std::tuple{"femur", &truth.femur, &found.femur, &uncut.femur}}) {
+          const Vec3 t = turn(a->X_IB.R, b->X_IB.R), u = turn(w->X_IB.R, b->X_IB.R);
+          std::printf("| %s %s %s | %s | %.1f | %.1f | %.1f | %.1f | %.1f / %.1f / %.1f | %s |\n",
+                      subject, word, bone, view.name, t.x(), t.y(), t.z(), degrees(b->interval),
+                      u.x(), u.y(), u.z(), b->source.c_str());
         }
         for (const std::string& text : found.warnings)
           std::printf("    warning: %s\n", text.c_str());

@@ -181,6 +181,12 @@ JointCentre chosen_centre(const std::vector<JointCentre>& centres,
   return *it;
 }
 
+double harrington_interval(const std::vector<JointCentre>& centres) {
+  const auto it = std::find_if(centres.begin(), centres.end(),
+                               [](const JointCentre& c) { return c.definition == "harrington"; });
+  return it->interval;
+}
+
 struct KneeMarkers {
   std::string lateral;
   std::optional<std::string> medial;
@@ -280,6 +286,13 @@ Calibration calibrate(const MarkerData& markers, const CalibrationOptions& optio
         join_text("no medial knee marker: in frame ", frames.begin()->first + 1,
                   " the knee's axis is taken parallel to the pelvis' left-right axis, ",
                   options.knee_half_width, " mm from the lateral marker to its middle"));
+  }
+  if (centre.definition == "surfaces" && centre.interval > harrington_interval(result.centres)) {
+    result.warnings.push_back(
+        join_text("the surfaces' joint centre is known to ", centre.interval,
+                  " mm only on the markers (pelvis landmarks of image and markers differ by ",
+                  centre.rms, " mm): give the landmarks asis and psis of both sides, or choose ",
+                  "joint_centre = \"harrington\""));
   }
   HipModel& model = result.model;
   model.side = options.side;
