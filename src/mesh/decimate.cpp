@@ -57,13 +57,14 @@ struct Candidate {
 
 class Decimator {
  public:
-  Decimator(const TriMesh& mesh, double evenness)
+  Decimator(const TriMesh& mesh, const DecimateOptions& options)
       : mesh_(mesh),
+        kept_(options.kept),
         origin_(mesh.points.row(0)),
         quadrics_(static_cast<std::size_t>(mesh.n_vertices())),
         stamps_(static_cast<std::size_t>(mesh.n_vertices()), 0) {
     for (Index v = 0; v < mesh.n_vertices(); ++v)
-      for (Index t : mesh_.around(v)) add_triangle(v, t, evenness);
+      for (Index t : mesh_.around(v)) add_triangle(v, t, options.evenness);
   }
 
   TriMesh run(Index n_triangles) {
@@ -112,7 +113,9 @@ class Decimator {
   int stamp(Index a, Index b) const {
     return stamps_[static_cast<std::size_t>(a)] + stamps_[static_cast<std::size_t>(b)];
   }
+  bool is_kept(Index v) const { return !kept_.empty() && kept_[static_cast<std::size_t>(v)]; }
   void push(Index a, Index b) {
+    if (is_kept(a) || is_kept(b)) return;
     queue_.push({sum(a, b)(target(a, b) - origin_), a, b, stamp(a, b)});
   }
 
@@ -124,6 +127,7 @@ class Decimator {
   }
 
   EditableMesh mesh_;
+  const std::vector<bool>& kept_;
   Vec3 origin_;
   std::vector<Quadric> quadrics_;
   std::vector<int> stamps_;
@@ -137,8 +141,11 @@ TriMesh decimate(const TriMesh& mesh, const DecimateOptions& options) {
           "decimate: a closed surface has at least 4 triangles, asked for ", options.n_triangles);
   require(options.evenness >= 0.0, "decimate: evenness must not be negative, got ",
           options.evenness);
+  require(options.kept.empty() || std::ssize(options.kept) == mesh.n_vertices(),
+          "decimate: ", options.kept.size(), " marks of kept vertices for ", mesh.n_vertices(),
+          " vertices");
   require_closed_manifold(mesh, "decimate");
-  return Decimator(mesh, options.evenness).run(options.n_triangles);
+  return Decimator(mesh, options).run(options.n_triangles);
 }
 
 }  // namespace coxa

@@ -1,14 +1,13 @@
 #include <coxa/mesh/rebuild.h>
 
+#include "fewer_triangles.h"
+
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
 #include <coxa/geom/triangle_tree.h>
 #include <coxa/mesh/iso_surface.h>
 #include <coxa/mesh/measures.h>
-#include <coxa/mesh/remesh.h>
 #include <coxa/mesh/topology.h>
-#include <coxa/mesh/unfold.h>
-#include <coxa/mesh/validate.h>
 #include <coxa/mesh/voxelize.h>
 
 #include <algorithm>
@@ -209,45 +208,35 @@ void update_with_walls(const TriMesh& loose, double half, const Grid& grid,
   });
 }
 
-// even triangles of the length asked for or less; where they fold at sharp rims, about as many that
-// follow the shape, or more where those fold
-TriMesh fewer_triangles(const TriMesh& raw, double target_edge) {
-  for (const double share : {1.0, 0.6}) {
-    TriMesh even = remesh(raw, {.target_edge = share * target_edge});
-    if (update_unfolded(even) && validate(even).valid()) return even;
+// how far the new surface is from the old one at most
+double largest_move(const TriMesh& made, const TriangleTree& old_surface, double allowed) {
+  double largest = 0.0;
+  for (const auto& p : made.points.rowwise()) {
+    const double move = std::sqrt(old_surface.nearest(p.transpose()).squared_distance);
+    largest = std::max(largest, move);
+    if (move > allowed)
+      fail(ErrorCode::bad_mesh, "a new surface would lie ", move, " mm from the old one at (", p[0],
+           ", ", p[1], ", ", p[2], ") mm, more than ", allowed, " mm");
   }
-  const double of_triangle = 0.25 * std::sqrt(3.0) * target_edge * target_edge;
-  const double wanted = triangle_areas(raw).sum() / of_triangle;
-  TriMesh fewest = raw;
-  for (const double share : {8.0, 4.0, 2.0}) {
-    const auto n = std::max<Index>(static_cast<Index>(share * wanted), 4);
-    if (n >= fewest.n_triangles()) continue;
-    TriMesh fewer = decimate(fewest, {.n_triangles = n});
-    if (!validate(fewer).valid()) break;
-    fewest = std::move(fewer);
-  }
-  return fewest;
+  return largest;
 }
 
-// how far the new surface is from the old one, and what of the old one it leaves out
-void update_moves(const TriMesh& mesh, const TriangleTree& old_surface, double max_move,
-                  Rebuilt& result) {
-  for (const auto& p : result.mesh.points.rowwise()) {
-    const double move = std::sqrt(old_surface.nearest(p.transpose()).squared_distance);
-    result.largest_move = std::max(result.largest_move, move);
-    if (move > max_move)
-      fail(ErrorCode::bad_mesh, "a new surface would lie ", move, " mm from the old one at (", p[0],
-           ", ", p[1], ", ", p[2], ") mm, more than ", max_move, " mm");
-  }
-  const TriangleTree new_surface(result.mesh.points, result.mesh.triangles);
+// how far the old surface reaches out of the new one at most
+double largest_loss(const TriMesh& mesh, const TriMesh& made, double allowed) {
+  const TriangleTree new_surface(made.points, made.triangles);
+  double largest = 0.0;
   for (Index t = 0; t < mesh.n_triangles(); ++t) {
     const Vec3 middle = mesh.points(mesh.triangles.row(t), Eigen::all).colwise().mean();
     for (int k = 0; k < 3; ++k) {
       const Vec3 corner = mesh.points.row(mesh.triangles(t, k));
       for (const Vec3& p : {corner, Vec3(0.5 * (corner + middle))})
-        result.largest_loss = std::max(result.largest_loss, new_surface.signed_distance(p));
+        largest = std::max(largest, new_surface.signed_distance(p));
     }
   }
+  if (largest > allowed)
+    fail(ErrorCode::bad_mesh, "a new surface would leave out what reaches ", largest,
+         " mm out of it, more than ", allowed, " mm");
+  return largest;
 }
 
 }  // namespace
@@ -263,6 +252,8 @@ Rebuilt rebuild(const TriMesh& mesh, const RebuildOptions& options) {
   require(options.thickening >= 0.0, "rebuild: thickening must not be negative, got ",
           options.thickening, " mm");
   require(options.max_move >= 0.0, "rebuild: max_move must not be negative, got ", options.max_move,
+          " mm");
+  require(options.max_loss >= 0.0, "rebuild: max_loss must not be negative, got ", options.max_loss,
           " mm");
   const TriangleTree old_surface(mesh.points, mesh.triangles);  // refuses what cannot be read
   const Grid grid(mesh.points, options.spacing);
@@ -282,10 +273,12 @@ Rebuilt rebuild(const TriMesh& mesh, const RebuildOptions& options) {
   const auto position = [&](const Vec3& index) { return Vec3(grid.origin + grid.spacing * index); };
   const TriMesh raw = without_crumbs(iso_surface(grid.size, values, 0.0, position));
 
+  if (options.max_loss < kInfinity) largest_loss(mesh, raw, options.max_loss);  // in good time
   Rebuilt result;
-  result.mesh = fewer_triangles(raw, options.target_edge);
+  result.mesh = fewer_triangles(raw, options.target_edge, options.spacing);
   result.thickened_area = thickened_area;
-  update_moves(mesh, old_surface, options.max_move, result);
+  result.largest_move = largest_move(result.mesh, old_surface, options.max_move);
+  result.largest_loss = largest_loss(mesh, result.mesh, options.max_loss);
   return result;
 }
 

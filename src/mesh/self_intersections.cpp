@@ -7,6 +7,8 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <iterator>
+#include <numeric>
 
 namespace coxa {
 namespace {
@@ -64,19 +66,32 @@ bool meet_wrongly(const TriMesh& mesh, Index s, Index t) {
 }  // namespace
 
 std::vector<std::array<Index, 2>> self_intersections(const TriMesh& mesh) {
-  if (mesh.empty()) return {};
+  std::vector<Index> all(static_cast<std::size_t>(mesh.n_triangles()));
+  std::iota(all.begin(), all.end(), 0);
+  return self_intersections(mesh, all);
+}
+
+std::vector<std::array<Index, 2>> self_intersections(const TriMesh& mesh,
+                                                     const std::vector<Index>& some) {
+  if (some.empty()) return {};
   const TriangleTree tree(mesh.points, mesh.triangles);
-  std::vector<std::vector<Index>> partners(static_cast<std::size_t>(mesh.n_triangles()));
-  parallel_for(mesh.n_triangles(), [&](Index s) {
+  std::vector<bool> looks(static_cast<std::size_t>(mesh.n_triangles()), false);
+  for (const Index s : some) looks[static_cast<std::size_t>(s)] = true;
+  std::vector<std::vector<Index>> partners(some.size());
+  parallel_for(std::ssize(some), [&](Index i) {
+    const Index s = some[static_cast<std::size_t>(i)];
     if (!has_area(mesh, s)) return;
     const Points corners = mesh.points(mesh.triangles.row(s), Eigen::all);
-    for (Index t : tree.overlapping(corners.colwise().minCoeff(), corners.colwise().maxCoeff()))
-      if (t > s && has_area(mesh, t) && meet_wrongly(mesh, s, t))
-        partners[static_cast<std::size_t>(s)].push_back(t);
+    for (Index t : tree.overlapping(corners.colwise().minCoeff(), corners.colwise().maxCoeff())) {
+      const bool once = t > s || !looks[static_cast<std::size_t>(t)];
+      if (t != s && once && has_area(mesh, t) && meet_wrongly(mesh, s, t))
+        partners[static_cast<std::size_t>(i)].push_back(t);
+    }
   });
   std::vector<std::array<Index, 2>> pairs;
-  for (Index s = 0; s < mesh.n_triangles(); ++s)
-    for (Index t : partners[static_cast<std::size_t>(s)]) pairs.push_back({s, t});
+  for (std::size_t i = 0; i < some.size(); ++i)
+    for (Index t : partners[i]) pairs.push_back({std::min(some[i], t), std::max(some[i], t)});
+  std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 

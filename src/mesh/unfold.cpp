@@ -33,13 +33,24 @@ void update_evened(TriMesh& mesh, const std::vector<bool>& marked, const Adjacen
   }
 }
 
+// those with a marked corner
+std::vector<Index> triangles_of(const TriMesh& mesh, const std::vector<bool>& marked) {
+  std::vector<Index> found;
+  for (Index t = 0; t < mesh.n_triangles(); ++t)
+    for (int c = 0; c < 3; ++c)
+      if (marked[static_cast<std::size_t>(mesh.triangles(t, c))]) {
+        found.push_back(t);
+        break;
+      }
+  return found;
+}
+
 }  // namespace
 
 bool update_unfolded(TriMesh& mesh) {
   const Adjacency neighbours = vertex_neighbours(mesh);
-  for (int round = 0; round < kRounds; ++round) {
-    const auto pairs = self_intersections(mesh);
-    if (pairs.empty()) return true;
+  auto pairs = self_intersections(mesh);
+  for (int round = 0; round < kRounds && !pairs.empty(); ++round) {
     std::vector<bool> marked(static_cast<std::size_t>(mesh.n_vertices()), false);
     for (const auto& pair : pairs) {
       for (const Index t : pair) {
@@ -49,8 +60,10 @@ bool update_unfolded(TriMesh& mesh) {
     // a place that does not come free in six rounds is evened together with one more ring
     for (int ring = 0; ring <= round / 6; ++ring) marked = grown(marked, neighbours);
     for (int pass = 0; pass < kPasses; ++pass) update_evened(mesh, marked, neighbours);
+    // pairs of triangles that stayed where they are did not meet before
+    pairs = self_intersections(mesh, triangles_of(mesh, marked));
   }
-  return self_intersections(mesh).empty();
+  return pairs.empty();
 }
 
 }  // namespace coxa

@@ -62,14 +62,26 @@ double grid_spacing(const TriMesh& surface, double wanted) {
   return std::max(wanted, std::cbrt((box.high - box.low).prod() / kMostSamples));
 }
 
+/// A new surface around what the old one encloses; nullopt where more than a little would be lost.
+std::optional<Rebuilt> made_anew_evenly(const TriMesh& surface) {
+  try {
+    return rebuild(surface, {.spacing = grid_spacing(surface, kRebuildSpacing),
+                             .target_edge = kRebuildEdge,
+                             .max_loss = kLargestLoss});
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::cancelled) throw;
+    return std::nullopt;
+  }
+}
+
 /// A new surface around what the old one encloses; thin parts that would be lost become walls.
 TriMesh made_anew(const TriMesh& surface, const std::string& why,
                   std::vector<std::string>& changes) {
-  Rebuilt rebuilt = rebuild(
-      surface, {.spacing = grid_spacing(surface, kRebuildSpacing), .target_edge = kRebuildEdge});
   const double fine = grid_spacing(surface, kThinSpacing), half = kThickening / kThinSpacing * fine;
-  if (rebuilt.largest_loss > kLargestLoss)
-    rebuilt = rebuild(surface, {.spacing = fine, .thickening = half, .target_edge = kThinEdge});
+  std::optional<Rebuilt> even = made_anew_evenly(surface);
+  const Rebuilt rebuilt =
+      even ? std::move(*even)
+           : rebuild(surface, {.spacing = fine, .thickening = half, .target_edge = kThinEdge});
   if (rebuilt.thickened_area > 0.0)
     changes.push_back(join_text("parts too thin to be filled became walls of ", 2.0 * half, " mm"));
   changes.push_back(join_text(

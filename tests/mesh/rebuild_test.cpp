@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include "support/shapes.h"
 
+#include <cmath>
+
 namespace coxa {
 
 TEST(Rebuild, JoinsOverlappingBodiesIntoOne) {
@@ -74,6 +76,23 @@ TEST(Rebuild, ThickeningKeepsThinWallsAndTheLossIsTold) {
   EXPECT_GT(thick.thickened_area, fin - 1.0);
   EXPECT_LT(thick.thickened_area, fin + 1.0);
 }
+TEST(Rebuild, ThinWallsGetFewTrianglesThatDoNotCutEachOther) {
+  // wings thinner than the edge length asked for: even triangles of their two sides would meet
+  TriMesh mesh = test::box(Vec3(0, 0, 0), Vec3(3, 3, 3));
+  for (int k = 0; k < 6; ++k)
+    mesh = test::together(mesh,
+                          test::box(Vec3(2.9, 0.3 + 0.4 * k, 0.2), Vec3(8, 0.31 + 0.4 * k, 2.7)));
+  const Rebuilt rebuilt = rebuild(mesh, {.spacing = 0.2, .thickening = 0.12, .target_edge = 0.9});
+  EXPECT_TRUE(validate(rebuilt.mesh).valid());
+  const double of_triangle = triangle_areas(rebuilt.mesh).sum() / rebuilt.mesh.n_triangles();
+  EXPECT_GT(of_triangle, 0.25 * 0.25 * std::sqrt(3.0) * 0.9 * 0.9);
+}
+TEST(Rebuild, LeavesOutNoMoreThanAllowed) {
+  const TriMesh mesh = test::together(test::box(Vec3(0, 0, 0), Vec3(4, 4, 4)),
+                                      test::box(Vec3(3.9, 1.5, 1.51), Vec3(7, 2.5, 1.56)));
+  EXPECT_THROW(rebuild(mesh, {.spacing = 0.3, .max_loss = 1.0}), Error);
+  EXPECT_NO_THROW(rebuild(mesh, {.spacing = 0.3, .max_loss = 4.0}));
+}
 TEST(Rebuild, EdgeLengthIsAsAsked) {
   EXPECT_NEAR(mean_edge_length(rebuild(test::icosphere(3, 5.0), {.target_edge = 1.5}).mesh), 1.5,
               0.15);
@@ -93,6 +112,7 @@ TEST(Rebuild, RefusesSheetsAndLargeMoves) {
   EXPECT_THROW(rebuild(test::box(), {.smoothing = -1.0}), Error);
   EXPECT_THROW(rebuild(test::box(), {.thickening = -1.0}), Error);
   EXPECT_THROW(rebuild(test::box(), {.max_move = -1.0}), Error);
+  EXPECT_THROW(rebuild(test::box(), {.max_loss = -1.0}), Error);
 }
 TEST(Rebuild, IsBitIdenticalForOneAndEightThreads) {
   const auto run = [] { return rebuild(test::torus(5.0, 1.5, 24, 12)).mesh.points; };

@@ -73,6 +73,18 @@ TEST(Decimate, EvennessEvensTheTriangles) {
   EXPECT_GT(even, 0.93);
   EXPECT_GT(even, shape);
 }
+TEST(Decimate, LeavesKeptVerticesWhereTheyAre) {
+  const TriMesh ball = test::icosphere(4, 5.0);
+  std::vector<bool> kept(static_cast<std::size_t>(ball.n_vertices()), false);
+  for (Index v = 0; v < ball.n_vertices(); ++v)
+    kept[static_cast<std::size_t>(v)] = ball.points(v, 2) > 3.0;
+  const TriMesh fewer = decimate(ball, {.n_triangles = 1000, .kept = kept});
+  for (Index v = 0; v < ball.n_vertices(); ++v)
+    if (kept[static_cast<std::size_t>(v)]) {
+      EXPECT_EQ((fewer.points.rowwise() - ball.points.row(v)).rowwise().norm().minCoeff(), 0.0);
+    }
+  EXPECT_LT(fewer.n_triangles(), ball.n_triangles() / 2);
+}
 TEST(Decimate, StopsAtTheLastManifoldAndKeepsItClosed) {
   const TriMesh tiny = decimate(test::icosphere(2), {.n_triangles = 4});
   EXPECT_EQ(manifold_fault(tiny), "");
@@ -82,6 +94,7 @@ TEST(Decimate, IsOnlyAsGoodAsItsInput) {
   EXPECT_THROW(decimate(test::plate(0.0), {.n_triangles = 10}), Error);
   EXPECT_THROW(decimate(test::box(), {.n_triangles = 3}), Error);
   EXPECT_THROW(decimate(test::box(), {.n_triangles = 8, .evenness = -1.0}), Error);
+  EXPECT_THROW(decimate(test::box(), {.n_triangles = 8, .kept = {true}}), Error);
 }
 TEST(Remesh, GivesEdgesNearTheTargetOnTheSurface) {
   const TriMesh torus = iso_torus();

@@ -100,6 +100,16 @@ TEST(SelfIntersections, FindFoldsAndNeighboursThatCross) {
   fold.points.row(3) << 0.6, -0.8, 0;
   EXPECT_TRUE(self_intersections(fold).empty());
 }
+TEST(SelfIntersections, OfSomeTrianglesAreThosePairsOfAllThatHaveOneOfThem) {
+  TriMesh mesh = test::icosphere(3);
+  mesh.points.row(3) *= -1.05;
+  std::vector<Index> some;
+  for (Index t = 0; t < mesh.n_triangles(); t += 3) some.push_back(t);
+  auto expected = self_intersections(mesh);
+  std::erase_if(expected, [](const auto& pair) { return pair[0] % 3 != 0 && pair[1] % 3 != 0; });
+  EXPECT_FALSE(expected.empty());
+  EXPECT_EQ(self_intersections(mesh, some), expected);
+}
 TEST(SelfIntersections, AreTheSameForOneAndEightThreads) {
   TriMesh mesh = test::icosphere(3);
   mesh.points.row(3) *= -1.05;

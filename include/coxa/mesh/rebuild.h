@@ -1,5 +1,6 @@
 #pragma once
 
+#include <coxa/core/types.h>
 #include <coxa/mesh/tri_mesh.h>
 
 namespace coxa {
@@ -15,6 +16,7 @@ struct RebuildOptions {
                             ///< than the grid can see, become walls with this on both sides of them
   double target_edge = 0.8;  ///< mm, > 0
   double max_move = 1.0;  ///< mm, >= 0. Refused where the new surface is farther from the old one.
+  double max_loss = kInfinity;  ///< mm, >= 0. Refused where the old one reaches farther out.
 };
 
 struct Rebuilt {
@@ -31,7 +33,7 @@ struct Rebuilt {
 /// level of the distance signed so is remeshed, unless even triangles fold; pieces below a
 /// hundredth of the largest one's area are dropped.
 /// @throws Error   bad_mesh if nothing is enclosed, or the new surface would be farther off than
-///                 `max_move`
+///                 `max_move`, or leave out more than `max_loss`
 Rebuilt rebuild(const TriMesh& mesh, const RebuildOptions& options = {});
 
 }  // namespace coxa

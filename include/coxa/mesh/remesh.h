@@ -2,11 +2,14 @@
 
 #include <coxa/mesh/tri_mesh.h>
 
+#include <vector>
+
 namespace coxa {
 
 struct DecimateOptions {
   Index n_triangles = 1000;  ///< >= 4. Wanted; more stay where no edge can go without a fold.
   double evenness = 0.0;     ///< >= 0. 0 follows the shape only; 0.1 gives triangles of even size.
+  std::vector<bool> kept = {};  ///< vertices that stay where they are; empty for none
 };
 
 /// Fewer triangles: edges are collapsed, cheapest first, each end vertex placed where the squared

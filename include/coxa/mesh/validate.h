@@ -59,5 +59,8 @@ ValidityReport validate(const TriMesh& mesh, const ValidateOptions& options = {}
 /// cross, and pairs with one that share more than it. Triangles without area are skipped. Each pair
 /// ascending, sorted.
 std::vector<std::array<Index, 2>> self_intersections(const TriMesh& mesh);
+/// The same, only of pairs with one of `some` triangles (ascending) in them.
+std::vector<std::array<Index, 2>> self_intersections(const TriMesh& mesh,
+                                                     const std::vector<Index>& some);
 
 }  // namespace coxa
