@@ -1,15 +1,10 @@
 #include <coxa/fem/mean_dilatation.h>
-#include <coxa/geom/cross_matrix.h>
 
 #include <coxa/core/error.h>
 
-#include <Eigen/LU>
-
 #include <algorithm>
-#include <cmath>
-
-#include "cofactor.h"
 #include "element_assembly.h"
+#include "volume_measure.h"
 
 namespace coxa::fem {
 namespace {
@@ -47,10 +42,13 @@ PatchList list_patches(const std::vector<Index>& patch_of, Index n_elements) {
 }  // namespace
 
 struct MeanDilatation::Impl {
-  Impl(const TetMesh& mesh, const std::vector<Index>& patch_of, double lambda_, ParticleMap map)
+  Impl(const TetMesh& mesh, const std::vector<Index>& patch_of, double lambda_, ParticleMap map,
+       const Options& options_)
       : assembly(mesh, std::move(map), {}),
         patches(list_patches(patch_of, mesh.n_tets())),
-        lambda(lambda_) {
+        lambda(lambda_),
+        options(options_),
+        measure(make_volume_measure(options_.dilatation)) {
     require(lambda > 0.0, "lambda of the mean dilatation must be positive, got ", lambda, " MPa");
     find_slots();
   }
@@ -97,55 +95,75 @@ struct MeanDilatation::Impl {
   int slot(Size k, int a) const {
     return slot_of_corner[k * static_cast<Size>(assembly.n_nodes()) + static_cast<Size>(a)];
   }
-  /// Volume over reference volume.
-  double ratio(const VecX& x, Index patch) const {
-    double volume = 0.0;
+  /// Mean of the measure over the patch.
+  double mean(const VecX& x, Index patch) const {
+    double sum = 0.0;
     each_element(patch, [&](Index e, Size) {
       for (int q = 0; q < assembly.n_points(); ++q)
-        volume += assembly.weight(e, q) * assembly.gradient_of(x, e, q).determinant();
+        sum += assembly.weight(e, q) * measure->energy_density(assembly.gradient_of(x, e, q));
     });
-    return volume / rest_volume[static_cast<Size>(patch)];
+    return sum / rest_volume[static_cast<Size>(patch)];
   }
-  /// Gradient of the patch's volume by its slots.
-  void volume_gradient(const VecX& x, Index patch, Vec3* gradient) const {
+  /// The same; sets the gradient of mean times rest volume by the patch's slots.
+  double mean_with_gradient(const VecX& x, Index patch, Vec3* gradient) const {
     std::fill_n(gradient, scatter.size(patch), Vec3::Zero());
+    double sum = 0.0;
     each_element(patch, [&](Index e, Size k) {
       for (int q = 0; q < assembly.n_points(); ++q) {
-        const Mat3 C = assembly.weight(e, q) * cofactor(assembly.gradient_of(x, e, q));
+        const double weight = assembly.weight(e, q);
+        Mat3 slope;
+        sum += weight * measure->energy_with_piola(assembly.gradient_of(x, e, q), slope);
         for (int a = 0; a < assembly.n_nodes(); ++a)
-          gradient[slot(k, a)] += C * assembly.shape_gradient(e, q, a);
+          gradient[slot(k, a)] += weight * (slope * assembly.shape_gradient(e, q, a));
       }
     });
+    return sum / rest_volume[static_cast<Size>(patch)];
   }
-  /// Adds factor times the second derivative of the patch's volume.
-  void add_volume_hessian(const VecX& x, Index patch, double factor, Mat3* blocks) const {
-    const int n = scatter.size(patch);
+  /// Adds factor times the second derivative of mean times rest volume.
+  void add_curvature(const VecX& x, Index patch, double factor, Mat3* blocks) const {
+    const int n = scatter.size(patch), nodes = assembly.n_nodes();
     each_element(patch, [&](Index e, Size k) {
-      for (int q = 0; q < assembly.n_points(); ++q) {
-        const Mat3 F = factor * assembly.weight(e, q) * assembly.gradient_of(x, e, q);
-        for (int a = 0; a < assembly.n_nodes(); ++a)
-          for (int b = 0; b < assembly.n_nodes(); ++b) {
-            if (slot(k, a) > slot(k, b)) continue;
-            // d2J / dx_a dx_b = -[F (r_a x r_b)]x
-            blocks[Scatter::block_number(n, slot(k, a), slot(k, b))] -= cross_matrix(
-                F * assembly.shape_gradient(e, q, a).cross(assembly.shape_gradient(e, q, b)));
-          }
-      }
+      Mat3 own[55];  // of up to ten nodes
+      std::fill_n(own, nodes * (nodes + 1) / 2, Mat3::Zero());
+      for (int q = 0; q < assembly.n_points(); ++q)
+        measure->add_blocks(assembly.gradient_of(x, e, q), Tangent::exact,
+                            factor * assembly.weight(e, q), assembly.shape_gradients(e, q), own);
+      for (int a = 0; a < nodes; ++a)
+        for (int b = a; b < nodes; ++b) {
+          const Mat3& block = own[Scatter::block_number(nodes, a, b)];
+          const int i = slot(k, a), j = slot(k, b);
+          if (i <= j) blocks[Scatter::block_number(n, i, j)] += block;
+          // both orders of a pair fall on the same block where its nodes share a particle
+          if (i > j || (i == j && a != b))
+            blocks[Scatter::block_number(n, j, i)] += block.transpose();
+        }
     });
   }
-  double slope(double J) const { return J > 0.0 ? lambda * std::log(J) / J : kNaN; }
+  VolumeResistance resistance(double m) const {
+    return volume_resistance(options.dilatation, lambda, m);
+  }
+  double term_stiffness(const VolumeResistance& resistance, Index patch) const {
+    return resistance.curvature / rest_volume[static_cast<Size>(patch)];
+  }
+  /// Whether the tangent asked for holds the curvature of the measure.
+  bool is_curved(const VolumeResistance& resistance) const {
+    return options.tangent == Tangent::exact || !is_convex(options.dilatation) ||
+           resistance.slope > 0.0;
+  }
 
   ElementAssembly assembly;
   PatchList patches;
   double lambda;
+  Options options;
+  std::unique_ptr<const Material> measure;
   std::vector<double> rest_volume;  // of each patch, mm³
   std::vector<int> slot_of_corner;  // per listed element and node
   Scatter scatter;
 };
 
 MeanDilatation::MeanDilatation(const TetMesh& mesh, const std::vector<Index>& patch_of,
-                               double lambda, ParticleMap map)
-    : impl_(std::make_unique<Impl>(mesh, patch_of, lambda, std::move(map))) {}
+                               double lambda, ParticleMap map, const Options& options)
+    : impl_(std::make_unique<Impl>(mesh, patch_of, lambda, std::move(map), options)) {}
 
 MeanDilatation::~MeanDilatation() = default;
 
@@ -154,14 +172,20 @@ std::vector<std::pair<Index, Index>> MeanDilatation::pattern() const {
 }
 
 void MeanDilatation::add_force(const VecX& x, const VecX&, VecX& force) const {
+  add_force_with_energy(x, force);
+}
+
+double MeanDilatation::add_force_with_energy(const VecX& x, VecX& force) const {
   const auto part = std::make_unique_for_overwrite<Vec3[]>(impl_->scatter.n_slots());
+  VecX energy(impl_->n_patches());
   parallel_for(impl_->n_patches(), [&](Index patch) {
     Vec3* mine = &part[impl_->scatter.slot(patch)];
-    impl_->volume_gradient(x, patch, mine);
-    const double pull = -impl_->slope(impl_->ratio(x, patch));
-    for (int a = 0; a < impl_->scatter.size(patch); ++a) mine[a] *= pull;
+    const auto resistance = impl_->resistance(impl_->mean_with_gradient(x, patch, mine));
+    energy[patch] = impl_->rest_volume[static_cast<Size>(patch)] * resistance.energy;
+    for (int a = 0; a < impl_->scatter.size(patch); ++a) mine[a] *= -resistance.slope;
   });
   impl_->scatter.gather_force(part.get(), force);
+  return energy.sum();
 }
 
 void MeanDilatation::add_jacobian(const VecX& x, const VecX&, double stiffness_factor, double,
@@ -171,40 +195,81 @@ void MeanDilatation::add_jacobian(const VecX& x, const VecX&, double stiffness_f
   parallel_for(impl_->n_patches(), [&](Index patch) {
     const int n = impl_->scatter.size(patch);
     std::vector<Vec3> gradient(static_cast<Size>(n));
-    impl_->volume_gradient(x, patch, gradient.data());
-    const double J = impl_->ratio(x, patch);
-    const double curvature = impl_->lambda * (1.0 - std::log(J)) / (J * J) /
-                             impl_->rest_volume[static_cast<Size>(patch)];
+    const auto resistance = impl_->resistance(impl_->mean_with_gradient(x, patch, gradient.data()));
+    const double stiffness = impl_->term_stiffness(resistance, patch);
     Mat3* blocks = &part[impl_->scatter.block(patch)];
     for (int a = 0; a < n; ++a)
       for (int b = a; b < n; ++b)
-        blocks[Scatter::block_number(n, a, b)] = stiffness_factor * curvature *
+        blocks[Scatter::block_number(n, a, b)] = stiffness_factor * stiffness *
                                                  gradient[static_cast<Size>(a)] *
                                                  gradient[static_cast<Size>(b)].transpose();
-    impl_->add_volume_hessian(x, patch, stiffness_factor * impl_->slope(J), blocks);
+    if (impl_->is_curved(resistance))
+      impl_->add_curvature(x, patch, stiffness_factor * resistance.slope, blocks);
   });
   impl_->scatter.gather_blocks(part.get(), A);
+}
+
+void MeanDilatation::add_element_jacobian(const VecX& x, solve::BlockMatrix& A) const {
+  VecX slope = VecX::Zero(impl_->assembly.n_elements());
+  parallel_for(impl_->n_patches(), [&](Index patch) {
+    const auto resistance = impl_->resistance(impl_->mean(x, patch));
+    if (!impl_->is_curved(resistance)) return;
+    impl_->each_element(patch, [&](Index e, Size) { slope[e] = resistance.slope; });
+  });
+  impl_->assembly.add_jacobian(
+      [&](Index e, int q, double weight, Mat3* blocks) {
+        if (slope[e] == 0.0) return;
+        impl_->measure->add_blocks(impl_->assembly.gradient_of(x, e, q), Tangent::exact,
+                                   slope[e] * weight, impl_->assembly.shape_gradients(e, q),
+                                   blocks);
+      },
+      A);
+}
+
+PatchTerms MeanDilatation::patch_terms(const VecX& x) const {
+  const Scatter& scatter = impl_->scatter;
+  PatchTerms terms;
+  terms.stiffness.resize(static_cast<Size>(impl_->n_patches()));
+  terms.slope.resize(scatter.n_slots());
+  for (Index patch = 0; patch <= impl_->n_patches(); ++patch)
+    terms.start.push_back(static_cast<std::int64_t>(scatter.slot(patch)));
+  for (Size slot = 0; slot < scatter.n_slots(); ++slot)
+    terms.particle.push_back(scatter.particle(slot));
+  parallel_for(impl_->n_patches(), [&](Index patch) {
+    const auto resistance =
+        impl_->resistance(impl_->mean_with_gradient(x, patch, &terms.slope[scatter.slot(patch)]));
+    terms.stiffness[static_cast<Size>(patch)] = impl_->term_stiffness(resistance, patch);
+  });
+  return terms;
 }
 
 double MeanDilatation::energy(const VecX& x) const {
   return parallel_reduce(
       impl_->n_patches(), 0.0,
       [&](Index patch) {
-        const double J = impl_->ratio(x, patch);
-        if (!(J > 0.0)) return kInfinity;
-        const double log_J = std::log(J);
-        return 0.5 * impl_->lambda * impl_->rest_volume[static_cast<Size>(patch)] * log_J * log_J;
+        return impl_->rest_volume[static_cast<Size>(patch)] *
+               impl_->resistance(impl_->mean(x, patch)).energy;
       },
       [](double a, double b) { return a + b; });
 }
 
 void MeanDilatation::set_offsets(const Points& offset) { impl_->assembly.set_offsets(offset); }
 
-VecX MeanDilatation::mean_stress(const VecX& x) const {
-  VecX stress(impl_->assembly.n_elements());
+std::vector<Mat3> MeanDilatation::cauchy_stress(const VecX& x) const {
+  const ElementAssembly& assembly = impl_->assembly;
+  std::vector<Mat3> stress(static_cast<Size>(assembly.n_elements()), Mat3::Zero());
   parallel_for(impl_->n_patches(), [&](Index patch) {
-    const double value = impl_->slope(impl_->ratio(x, patch));
-    impl_->each_element(patch, [&](Index e, Size) { stress[e] = value; });
+    const double slope = impl_->resistance(impl_->mean(x, patch)).slope;
+    impl_->each_element(patch, [&](Index e, Size) {
+      double volume = 0.0;
+      Mat3& sum = stress[static_cast<Size>(e)];
+      for (int q = 0; q < assembly.n_points(); ++q) {
+        const Mat3 F = assembly.gradient_of(x, e, q);
+        sum += assembly.weight(e, q) * cauchy_from(slope * impl_->measure->first_piola(F), F);
+        volume += assembly.weight(e, q);
+      }
+      sum /= volume;
+    });
   });
   return stress;
 }

@@ -16,17 +16,24 @@ std::unique_ptr<fem::Material> compacting(std::unique_ptr<fem::Material> law,
   return fem::make_compacting(std::move(law), {kSolidShare, kSolidStiffness * confined});
 }
 
-std::unique_ptr<fem::Material> make_law(const CartilageMaterial& material) {
-  const fem::Lame lame = fem::lame_from(material.youngs_modulus, material.poissons_ratio);
-  switch (material.law) {
+/// The law; `lame` without its lambda where volume change is resisted by patches.
+std::unique_ptr<fem::Material> make_law(MaterialLaw law, const fem::Lame& lame,
+                                        const fem::Lame& whole) {
+  switch (law) {
     case MaterialLaw::corotational:
-      return compacting(fem::make_corotational(lame), lame);
+      return compacting(fem::make_corotational(lame), whole);
     case MaterialLaw::st_venant_kirchhoff:
-      return compacting(fem::make_st_venant_kirchhoff(lame), lame);
+      return compacting(fem::make_st_venant_kirchhoff(lame), whole);
     case MaterialLaw::neo_hookean:
       break;
   }
-  return fem::make_neo_hookean({0.0, lame.mu});  // volume change is resisted by patches
+  return fem::make_neo_hookean(lame);
+}
+
+fem::Dilatation dilatation_of(MaterialLaw law) {
+  return law == MaterialLaw::corotational          ? fem::Dilatation::stretch_sum
+         : law == MaterialLaw::st_venant_kirchhoff ? fem::Dilatation::green_trace
+                                                   : fem::Dilatation::log_volume;
 }
 
 }  // namespace
@@ -36,30 +43,27 @@ CartilageElasticity::CartilageElasticity(const TetMesh& mesh, Index first_partic
   fem::ParticleMap map;
   map.particle_of.resize(static_cast<std::size_t>(mesh.n_vertices()));
   std::iota(map.particle_of.begin(), map.particle_of.end(), first_particle);
+  const fem::Lame whole = fem::lame_from(material.youngs_modulus, material.poissons_ratio);
+  const bool by_patches = material.volume_change == VolumeChange::by_patches;
   by_element_ = std::make_unique<fem::ElasticForce>(
-      mesh, make_law(material), map,
+      mesh, make_law(material.law, {by_patches ? 0.0 : whole.lambda, whole.mu}, whole), map,
       fem::ElasticOptions{.axes = {}, .tangent = fem::Tangent::positive});
-  if (material.law != MaterialLaw::neo_hookean) return;
-  const double lambda = fem::lame_from(material.youngs_modulus, material.poissons_ratio).lambda;
-  by_patch_ = std::make_unique<fem::MeanDilatation>(mesh, fem::volume_patches(mesh), lambda, map);
-}
-
-std::vector<const dynamics::Force*> CartilageElasticity::forces() const {
-  if (!by_patch_) return {by_element_.get()};
-  return {by_element_.get(), by_patch_.get()};
+  if (!by_patches) return;
+  by_patch_ = std::make_unique<fem::MeanDilatation>(
+      mesh, fem::volume_patches(mesh), whole.lambda, map,
+      fem::MeanDilatation::Options{dilatation_of(material.law), fem::Tangent::positive});
 }
 
 double CartilageElasticity::add_force_with_energy(const VecX& x, VecX& force) const {
   double energy = by_element_->add_force_with_energy(x, force);
-  if (by_patch_) {
-    energy += by_patch_->energy(x);
-    by_patch_->add_force(x, VecX(), force);
-  }
+  if (by_patch_) energy += by_patch_->add_force_with_energy(x, force);
   return energy;
 }
 
-VecX CartilageElasticity::mean_stress(const VecX& x) const {
-  return by_patch_ ? by_patch_->mean_stress(x) : VecX(VecX::Zero(by_element_->n_elements()));
+void CartilageElasticity::add_patch_stress(const VecX& x, std::vector<Mat3>& cauchy_stress) const {
+  if (!by_patch_) return;
+  const std::vector<Mat3> more = by_patch_->cauchy_stress(x);
+  for (std::size_t e = 0; e < more.size(); ++e) cauchy_stress[e] += more[e];
 }
 
 }  // namespace coxa::joint

@@ -15,13 +15,14 @@ class CartilageElasticity {
  public:
   CartilageElasticity(const TetMesh& mesh, Index first_particle, const CartilageMaterial& material);
 
-  std::vector<const dynamics::Force*> forces() const;
   /// Adds the forces and returns the energy, N·mm; infinite where the law forbids x.
   double add_force_with_energy(const VecX& x, VecX& force) const;
+  /// What resists volume change by patches; null: nothing does.
+  const fem::MeanDilatation* by_patch() const { return by_patch_.get(); }
   /// The law without what acts by patches: strains come from here.
   const fem::ElasticForce& by_element() const { return *by_element_; }
-  /// What the patches add to the elements' mean stress, MPa; zero where there are none.
-  VecX mean_stress(const VecX& x) const;
+  /// Adds what the patches add to the elements' Cauchy stress, MPa.
+  void add_patch_stress(const VecX& x, std::vector<Mat3>& cauchy_stress) const;
 
  private:
   std::unique_ptr<fem::ElasticForce> by_element_;

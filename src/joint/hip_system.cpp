@@ -209,11 +209,18 @@ std::optional<collide::SurfaceContact> HipSystem::make_femur_contact(double stif
 }
 
 std::vector<const dynamics::Force*> HipSystem::elastic() const {
-  std::vector<const dynamics::Force*> forces = socket_elasticity_.forces();
-  const auto others = femur_elasticity_.forces();
-  forces.insert(forces.end(), others.begin(), others.end());
+  std::vector<const dynamics::Force*> forces{&socket_elasticity_.by_element(),
+                                             &femur_elasticity_.by_element()};
   if (ligaments_) forces.push_back(&*ligaments_);
   return forces;
+}
+
+std::vector<const fem::MeanDilatation*> HipSystem::patches() const {
+  std::vector<const fem::MeanDilatation*> patches;
+  for (const CartilageElasticity* body : {&socket_elasticity_, &femur_elasticity_}) {
+    if (body->by_patch() != nullptr) patches.push_back(body->by_patch());
+  }
+  return patches;
 }
 
 VecX HipSystem::elastic_force(const VecX& x, double& energy) const {

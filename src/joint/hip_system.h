@@ -47,9 +47,11 @@ class HipSystem {
 
   /// @param reach  how far the head may move, mm: bone farther than that is left out
   HipContact make_contact(double stiffness, double reach) const;
-  /// Forces of cartilages and ligaments.
+  /// Forces of cartilages and ligaments, without what resists volume change by patches,
   std::vector<const dynamics::Force*> elastic() const;
-  /// Their sum at x on all particles, N; sets their energy, N·mm.
+  /// and that.
+  std::vector<const fem::MeanDilatation*> patches() const;
+  /// Sum of both at x on all particles, N; sets their energy, N·mm.
   VecX elastic_force(const VecX& x, double& energy) const;
   const fem::ElasticForce& socket_elasticity() const { return socket_elasticity_.by_element(); }
   const fem::ElasticForce& femur_elasticity() const { return femur_elasticity_.by_element(); }

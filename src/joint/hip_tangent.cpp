@@ -14,11 +14,10 @@ constexpr int kMaxIterations = 3000;
 
 }  // namespace
 
-HipTangent::HipTangent(std::vector<bool> free,
-                       const std::vector<std::pair<Index, Index>>& elastic_pattern)
-    : free_(std::move(free)),
-      compact_(free_.size(), 0),
-      full_(static_cast<Index>(free_.size()), elastic_pattern) {
+HipTangent::HipTangent(std::vector<bool> free, const HipSystem& system)
+    : free_(std::move(free)), compact_(free_.size(), 0) {
+  const auto elastic_pattern = dynamics::total_pattern(system.elastic());
+  full_ = solve::BlockMatrix(static_cast<Index>(free_.size()), elastic_pattern);
   for (std::size_t i = 0; i < free_.size(); ++i) {
     if (!free_[i]) continue;
     compact_[i] = static_cast<Index>(particle_.size());
@@ -42,31 +41,47 @@ HipTangent::HipTangent(std::vector<bool> free,
   }
 }
 
-void HipTangent::update_elastic(const std::vector<const dynamics::Force*>& elastic, const VecX& x) {
-  dynamics::assemble(elastic, x, VecX::Zero(x.size()), 1.0, 0.0, full_);
+void HipTangent::update_elastic(const HipSystem& system, const VecX& x) {
+  dynamics::assemble(system.elastic(), x, VecX::Zero(x.size()), 1.0, 0.0, full_);
+  patch_terms_.clear();
+  for (const fem::MeanDilatation* patches : system.patches()) {
+    patches->add_element_jacobian(x, full_);
+    patch_terms_.push_back(patches->patch_terms(x));
+  }
   parallel_for(static_cast<std::int64_t>(source_.size()), [&](Index slot) {
     const auto s = static_cast<std::size_t>(slot);
     elastic_.blocks()[s] = full_.blocks()[static_cast<std::size_t>(source_[s])];
   });
 }
 
+void HipTangent::add_row(double stiffness, const Index* particle, const Vec3* slope, Index n) {
+  Row row{stiffness, static_cast<Index>(row_particle_.size()), 0};
+  for (Index k = 0; k < n; ++k) {
+    const auto i = static_cast<std::size_t>(particle[k]);
+    if (!free_[i]) continue;
+    row_particle_.push_back(compact_[i]);
+    row_slope_.push_back(slope[k]);
+  }
+  row.last = static_cast<Index>(row_particle_.size());
+  rows_.push_back(row);
+}
+
 void HipTangent::update_contact(const HipContact& hip, const VecX& x) {
   rows_.clear();
   row_particle_.clear();
   row_slope_.clear();
+  for (const fem::PatchTerms& terms : patch_terms_) {
+    for (std::size_t k = 0; k < terms.stiffness.size(); ++k) {
+      const auto first = static_cast<std::size_t>(terms.start[k]);
+      add_row(terms.stiffness[k], &terms.particle[first], &terms.slope[first],
+              static_cast<Index>(terms.start[k + 1] - terms.start[k]));
+    }
+  }
   hip.for_each_constraint([&](const auto& contact, const auto& constraint) {
     if (contact.pressure(constraint, x) == 0.0) return;
-    ContactRow row{contact.stiffness(constraint) * constraint.area,
-                   static_cast<Index>(row_particle_.size()), 0};
-    for (Index k = constraint.first; k < constraint.last; ++k) {
-      const auto particle =
-          static_cast<std::size_t>(contact.stencil_particles()[static_cast<std::size_t>(k)]);
-      if (!free_[particle]) continue;
-      row_particle_.push_back(compact_[particle]);
-      row_slope_.push_back(contact.stencil_vectors()[static_cast<std::size_t>(k)]);
-    }
-    row.last = static_cast<Index>(row_particle_.size());
-    rows_.push_back(row);
+    const auto first = static_cast<std::size_t>(constraint.first);
+    add_row(contact.stiffness(constraint) * constraint.area, &contact.stencil_particles()[first],
+            &contact.stencil_vectors()[first], constraint.last - constraint.first);
   });
   row_force_.assign(rows_.size(), 0.0);
   index_rows_by_particle();
@@ -97,8 +112,7 @@ void HipTangent::update_preconditioner() {
     const auto p = static_cast<std::size_t>(i);
     Mat3 block = elastic_.blocks()[static_cast<std::size_t>(elastic_.slot(i, i))];
     for (Index u = use_start_[p]; u < use_start_[p + 1]; ++u) {
-      const ContactRow& row =
-          rows_[static_cast<std::size_t>(use_row_[static_cast<std::size_t>(u)])];
+      const Row& row = rows_[static_cast<std::size_t>(use_row_[static_cast<std::size_t>(u)])];
       const Vec3& slope = use_slope_[static_cast<std::size_t>(u)];
       block += row.stiffness * slope * slope.transpose();
     }
@@ -110,7 +124,7 @@ void HipTangent::update_preconditioner() {
 
 void HipTangent::multiply(const VecX& z, VecX& y) const {
   parallel_for(static_cast<std::int64_t>(rows_.size()), [&](Index r) {
-    const ContactRow& row = rows_[static_cast<std::size_t>(r)];
+    const Row& row = rows_[static_cast<std::size_t>(r)];
     double closing = 0.0;
     for (Index k = row.first; k < row.last; ++k) {
       closing += row_slope_[static_cast<std::size_t>(k)].dot(

@@ -6,22 +6,21 @@
 
 #include <vector>
 
-#include "hip_contact.h"
+#include "hip_system.h"
 
 namespace coxa::joint {
 
-/// Tangent stiffness of the free particles: an assembled elastic part and contact applied pair by
-/// pair.
+/// Tangent stiffness of the free particles: an assembled elastic part, and terms of rank one.
 ///
 /// Contact changes its pattern at every search, so it is not assembled: a pair costs six blocks a
-/// product.
+/// product. Nor is the volume of a patch of elements, which would couple all its nodes.
 class HipTangent {
  public:
   /// @param free per particle: whether it may move
-  HipTangent(std::vector<bool> free, const std::vector<std::pair<Index, Index>>& elastic_pattern);
+  HipTangent(std::vector<bool> free, const HipSystem& system);
 
   /// Takes the elastic stiffness at x.
-  void update_elastic(const std::vector<const dynamics::Force*>& elastic, const VecX& x);
+  void update_elastic(const HipSystem& system, const VecX& x);
   /// Takes the constraints that press at x; to be called after update_elastic and whenever contact
   /// changed.
   void update_contact(const HipContact& contact, const VecX& x);
@@ -31,10 +30,11 @@ class HipTangent {
   SolveReport solve(const VecX& residual, double tolerance, VecX& step) const;
 
  private:
-  struct ContactRow {
-    double stiffness;   // N/mm: penalty times area
+  struct Row {          // a term stiffness * slope slope^T
+    double stiffness;   // of contact: penalty times area, N/mm
     Index first, last;  // range in row_particle_
   };
+  void add_row(double stiffness, const Index* particle, const Vec3* slope, Index n);
   void index_rows_by_particle();
   void update_preconditioner();
   void multiply(const VecX& z, VecX& y) const;
@@ -46,7 +46,8 @@ class HipTangent {
   solve::BlockMatrix full_, elastic_;
   std::vector<std::int64_t> source_;  // slot in full_ for every slot of elastic_
 
-  std::vector<ContactRow> rows_;
+  std::vector<fem::PatchTerms> patch_terms_;
+  std::vector<Row> rows_;
   std::vector<Index> row_particle_;  // free numbers
   std::vector<Vec3> row_slope_;
   std::vector<Index> use_start_;  // per free particle: its uses by rows

@@ -80,8 +80,10 @@ void check_model(const JointModel& model) {
   const CartilageMaterial& material = model.material;
   require(material.youngs_modulus > 0.0, "Young's modulus must be positive, got ",
           material.youngs_modulus, " MPa");
-  require(-1.0 < material.poissons_ratio && material.poissons_ratio < 0.5,
-          "Poisson's ratio must be in (-1, 0.5), got ", material.poissons_ratio);
+  const bool by_patches = material.volume_change == VolumeChange::by_patches;
+  const double least_ratio = by_patches ? 0.0 : -1.0;
+  require(least_ratio < material.poissons_ratio && material.poissons_ratio < 0.5,
+          "Poisson's ratio must be in (", least_ratio, ", 0.5), got ", material.poissons_ratio);
   const double apart = (model.X_IP.p - model.X_IF.p).norm();
   require(apart <= kCentreSlack,
           "pelvis and femur frames must both have their origin at the joint ",

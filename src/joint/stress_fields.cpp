@@ -1,4 +1,5 @@
 #include <coxa/core/error.h>
+#include <coxa/core/parallel.h>
 #include <coxa/fem/results.h>
 #include <coxa/joint/simulate.h>
 
@@ -28,11 +29,12 @@ StressFields fields_of(const TetMesh& mesh, const Points& x, const CartilageMate
   const CartilageElasticity elasticity(mesh, 0, material);
   const Eigen::Map<const VecX> values(x.data(), x.size());
   fem::ElementFields fields = fem::compute_fields(elasticity.by_element(), values);
-  const VecX mean = elasticity.mean_stress(values);
-  for (Index e = 0; e < mesh.n_tets(); ++e) {
-    fields.cauchy_stress[static_cast<std::size_t>(e)].diagonal().array() += mean[e];
-    fields.principal_stress.row(e).array() += mean[e];
-  }
+  elasticity.add_patch_stress(values, fields.cauchy_stress);
+  parallel_for(mesh.n_tets(), [&](Index e) {
+    const Mat3& stress = fields.cauchy_stress[static_cast<std::size_t>(e)];
+    fields.principal_stress.row(e) = fem::principal_values(stress).transpose();
+    fields.von_mises[e] = fem::von_mises_stress(stress);
+  });
   return {.green_strain = components(fields.green_strain),
           .cauchy_stress = components(fields.cauchy_stress),
           .principal_stress = fields.principal_stress,

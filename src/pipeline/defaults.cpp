@@ -23,6 +23,7 @@ Fields joint_defaults() {
           {"young_mpa", joint.youngs_modulus},
           {"poisson", joint.poisson_ratio},
           {"law", joint.law},
+          {"volume_change", joint.volume_change},
           {"bare_bone", joint.bare_bone}};
 }
 

@@ -47,7 +47,8 @@ Record wanted_record(const JointRequest& request) {
                     {"force_N", j.force},
                     {"young_mpa", j.youngs_modulus},
                     {"poisson", j.poisson_ratio},
-                    {"law", j.law}};
+                    {"law", j.law},
+                    {"volume_change", j.volume_change}};
   if (j.loading == Loading::body_weight) {
     record.options["percent_body_weight"] = j.percent;
     record.options["body_mass_kg"] = *request.body_mass;
@@ -171,6 +172,9 @@ joint::JointModel read_joint_model(const JointRequest& request, const motion::Bo
                            : joint::MaterialLaw::st_venant_kirchhoff;
   model.material.youngs_modulus = request.joint.youngs_modulus;
   model.material.poissons_ratio = request.joint.poisson_ratio;
+  model.material.volume_change = request.joint.volume_change == "patches"
+                                     ? joint::VolumeChange::by_patches
+                                     : joint::VolumeChange::by_elements;
   model.bare_bone =
       request.joint.bare_bone == "both" ? joint::BareBone::both : joint::BareBone::hip_bone;
   for (const LigamentEntry& entry : request.joint.ligaments) {
@@ -234,10 +238,10 @@ std::string to_toml(const JointRequest& request, const fs::path& folder) {
   if (!request.labrum.empty())
     text += join_text("acetabular_labrum = \"", relative(request.labrum), "\"\n");
   if (request.body_mass) text += join_text("body_mass_kg = ", *request.body_mass, "\n");
-  text +=
-      join_text("motion = \"", relative(request.motion), "\"\n\n[joint]\nloading = \"",
-                name_of(j.loading), "\"\nforce_N = ", j.force, "\nyoung_mpa = ", j.youngs_modulus,
-                "\npoisson = ", j.poisson_ratio, "\nlaw = \"", j.law, "\"\n");
+  text += join_text("motion = \"", relative(request.motion), "\"\n\n[joint]\nloading = \"",
+                    name_of(j.loading), "\"\nforce_N = ", j.force,
+                    "\nyoung_mpa = ", j.youngs_modulus, "\npoisson = ", j.poisson_ratio,
+                    "\nlaw = \"", j.law, "\"\nvolume_change = \"", j.volume_change, "\"\n");
   if (j.loading == Loading::body_weight)
     text += join_text("percent_body_weight = ", j.percent, "\n");
   if (j.direction) {

@@ -108,6 +108,9 @@ void check_joint(const io::Table& table, const JointEntry& joint) {
           " must be \"corotational\", \"st_venant_kirchhoff\" or \"neo_hookean\", got \"",
           joint.law, "\"");
   require(joint.bare_bone == "hip_bone" || joint.bare_bone == "both", table.where("bare_bone"),
+  require(joint.volume_change == "patches" || joint.volume_change == "elements",
+          table.where("volume_change"), " must be \"patches\" or \"elements\", got \"",
+          joint.volume_change, "\"");
           " must be \"hip_bone\" or \"both\", got \"", joint.bare_bone, "\"");
 }
 
@@ -165,6 +168,7 @@ JointEntry read_joint_entry(const io::Table& root) {
   joint.poisson_ratio = table->value_or("poisson", joint.poisson_ratio);
   joint.law = table->value_or("law", joint.law);
   joint.bare_bone = table->value_or("bare_bone", joint.bare_bone);
+  joint.volume_change = table->value_or("volume_change", joint.volume_change);
   joint.ligaments = read_ligaments(*table);
   table->finish();
   check_joint(*table, joint);

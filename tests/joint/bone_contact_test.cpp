@@ -41,7 +41,8 @@ TEST(BoneContact, BareBoneBearsWhatThePadLetsThrough) {
   const JointModel model = on_a_pad();
   const FrameResult frame = pressed(model, 800.0);
   ASSERT_EQ(frame.status, FrameStatus::converged) << frame.reason;
-  EXPECT_LT(deepest(model, frame), 0.03);  // the hollow's facets lie up to 0.02 mm inside
+  // the hollow's facets lie up to 0.02 mm inside, and 0.01 mm of overlap is left around a node
+  EXPECT_LT(deepest(model, frame), 0.035);
   const double on_bone = frame.balance.force_on_bone.z();
   EXPECT_GT(on_bone, 50.0);
   EXPECT_LT(on_bone, 700.0);

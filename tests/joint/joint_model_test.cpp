@@ -35,6 +35,10 @@ TEST(CheckModel, NamesWhatCannotBeUsed) {
   bad = model;
   bad.material.poissons_ratio = 0.5;
   EXPECT_NE(fault(bad).find("0.5"), std::string::npos);
+  bad.material.poissons_ratio = 0.0;  // leaves patches nothing to resist with
+  EXPECT_NE(fault(bad).find("(0, 0.5)"), std::string::npos);
+  bad.material.volume_change = VolumeChange::by_elements;
+  check_model(bad);
   bad = model;
   bad.material.youngs_modulus = -3.0;
   EXPECT_NE(fault(bad).find("-3"), std::string::npos);

@@ -11,9 +11,14 @@
 
 namespace coxa::joint {
 
-/// Elastic law of the cartilage; the neo-Hookean law resists volume change patch by patch, so that
-/// it may be nearly incompressible.
+/// Elastic law of the cartilage.
 enum class MaterialLaw { st_venant_kirchhoff, corotational, neo_hookean };
+
+/// What resists the change of volume.
+enum class VolumeChange {
+  by_patches,  ///< patches of elements: no locking, nearly incompressible tissue too
+  by_elements  ///< each by itself, as finite-element programs take four-node elements
+};
 
 /// The solid's share of cartilage's volume: when its fluid is out, no more can go (60 to 85 % of
 /// its weight is water). Less is left of an element only where a thin edge is crushed.
@@ -22,7 +27,8 @@ inline constexpr double kSolidShare = 0.25;
 struct CartilageMaterial {
   MaterialLaw law = MaterialLaw::corotational;
   double youngs_modulus = 12.0;  ///< MPa, > 0
-  double poissons_ratio = 0.42;  ///< in (-1, 0.5)
+  double poissons_ratio = 0.42;  ///< in (0, 0.5); with VolumeChange::by_elements in (-1, 0.5)
+  VolumeChange volume_change = VolumeChange::by_patches;
 };
 
 /// Bare bone that the other side's cartilage may rest on.

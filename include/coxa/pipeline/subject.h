@@ -50,8 +50,9 @@ struct JointEntry {
   std::optional<Vec3> direction;
   double youngs_modulus = 12.0;  ///< MPa
   double poisson_ratio = 0.42;
-  std::string law = "corotational";    ///< or st_venant_kirchhoff, neo_hookean
-  std::string bare_bone = "hip_bone";  ///< or both
+  std::string law = "corotational";       ///< or st_venant_kirchhoff, neo_hookean
+  std::string volume_change = "patches";  ///< or elements: what resists it
+  std::string bare_bone = "hip_bone";     ///< or both
   std::vector<LigamentEntry> ligaments = {};
 };
 
