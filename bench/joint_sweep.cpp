@@ -104,7 +104,7 @@ void lead_by_hand(const joint::JointModel& model, const joint::LoadCase& load, c
       n, failed, iterations, 1e3 * total / static_cast<double>(n), 1e3 * seconds[n / 2],
       1e3 * seconds[n * 95 / 100], 1e3 * (processor_time() - processor) / static_cast<double>(n),
       static_cast<double>(n) / total);
-  const joint::FrameResult exact = hip.settle();
+  const joint::FrameResult exact = hip.settle().frame;
   const auto off = [](double live, double settled) { return 100.0 * (live / settled - 1.0); };
   const joint::ContactFigures &a = step.frame.contact, &b = exact.contact;
   std::printf(

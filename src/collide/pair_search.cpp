@@ -83,7 +83,7 @@ std::optional<Vec3> line_hit(const OtherSurface& other, Index triangle, const Ve
 /// Where the line along the smooth normal arrives; at a crease, where none does, the nearest point.
 FacedPoint along_smooth_normal(const OtherSurface& other, const Vec3& point,
                                const NearestPoint& nearest) {
-  FacedPoint faced{nearest.triangle, nearest.triangle, nearest.barycentric, Vec3::Zero(), 1.0};
+  FacedPoint faced{nearest.triangle, nearest.barycentric, Vec3::Zero(), 1.0};
   // fixed point of "the normal where the line along the normal arrives"; contracts as gap over
   // radius
   for (int iteration = 0; iteration < 3; ++iteration) {
@@ -115,11 +115,14 @@ double search_limit(const OtherSurface& other, const Vec3& point, Index hint,
 SampleSearch find_faced_point(const OtherSurface& other, const Vec3& point, const Vec3& normal,
                               Index hint, const ContactOptions& options) {
   const auto nearest = other.tree.nearest_within(point, search_limit(other, point, hint, options));
-  if (!nearest) return {std::nullopt, kInfinity};
+  if (!nearest) return {};
   const double distance = std::sqrt(nearest->squared_distance);
-  if (beyond_border(other, point, *nearest)) return {std::nullopt, distance};
+  const auto not_faced = [&]() -> SampleSearch {
+    return {std::nullopt, nearest, other.tree.sign_at(point, *nearest) > 0.0};
+  };
+  if (beyond_border(other, point, *nearest)) return not_faced();
 
-  FacedPoint faced{nearest->triangle, nearest->triangle, nearest->barycentric, Vec3::Zero(), 1.0};
+  FacedPoint faced{nearest->triangle, nearest->barycentric, Vec3::Zero(), 1.0};
   if (options.normal == ContactNormal::smooth) {
     faced = along_smooth_normal(other, point, *nearest);
   } else {
@@ -129,12 +132,12 @@ SampleSearch find_faced_point(const OtherSurface& other, const Vec3& point, cons
             : face_normal(other, nearest->triangle);
   }
   const double facing = -normal.dot(faced.normal);
-  if (options.facing > -1.0 && facing < options.facing) return {std::nullopt, distance};
+  if (options.facing > -1.0 && facing < options.facing) return not_faced();
   if (facing < options.facing_fully) {
     faced.share = (facing - options.facing) / (options.facing_fully - options.facing);
-    if (!(faced.share > 0.0)) return {std::nullopt, distance};
+    if (!(faced.share > 0.0)) return not_faced();
   }
-  return {faced, distance};
+  return {faced, nearest, true};
 }
 
 Points edge_bulges(const TriMesh& mesh) {

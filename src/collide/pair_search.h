@@ -16,7 +16,6 @@ struct OtherSurface {
 
 /// Point of the other surface that a sample faces.
 struct FacedPoint {
-  Index nearest = 0;  ///< triangle of the nearest point: a hint for the next search
   Index triangle = 0;
   Vec3 barycentric = Vec3::Zero();  ///< may leave [0, 1] slightly with smooth normals
   Vec3 normal = Vec3::Zero();       ///< unit, away from the other surface
@@ -25,8 +24,9 @@ struct FacedPoint {
 
 /// What a search for the point that a sample faces comes to.
 struct SampleSearch {
-  std::optional<FacedPoint> faced;  ///< nullopt where nothing near enough is faced
-  double distance = 0.0;  ///< mm, to the nearest point; infinite beyond the search distance
+  std::optional<FacedPoint> faced;      ///< nullopt where nothing near enough is faced
+  std::optional<NearestPoint> nearest;  ///< nullopt beyond the search distance
+  bool outside = true;                  ///< of the other surface; told of what is not faced
 };
 
 /// What a sample at `point` with outward normal `normal` faces.

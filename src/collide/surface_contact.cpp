@@ -1,14 +1,11 @@
 #include <coxa/collide/surface_contact.h>
 
 #include <coxa/core/error.h>
-#include <coxa/core/parallel.h>
-#include <coxa/mesh/measures.h>
 #include <coxa/mesh/vertex_normals.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "cut_samples.h"
 #include "pair_search.h"
 
 namespace coxa::collide {
@@ -150,101 +147,6 @@ void SurfaceContact::update_curvature(const VecX& x) {
   prepare_other(x);
   slave_bulge_ = edge_bulges({surface_points(slave_, x), slave_.triangles});
   other_bulge_ = edge_bulges(other_mesh_);
-}
-
-/// Whether each owner has to be searched for; empty: all. Takes from what every sample has of
-/// clearance how far the surfaces have moved since the last search.
-std::vector<char> SurfaceContact::owners_within(double reach, const Points& slave) {
-  if (options_.quadrature == ContactQuadrature::cut) return {};
-  if (searched_slave_.rows() == slave.rows()) {
-    const VecX way = (slave - searched_slave_).rowwise().norm();
-    const double other_way = (other_mesh_.points - searched_other_).rowwise().norm().maxCoeff();
-    for (std::size_t s = 0; s < samples_.size(); ++s) {
-      clearance_[s] -= way(slave_.triangles.row(samples_[s].triangle)).maxCoeff() + other_way;
-    }
-  }
-  searched_slave_ = slave;
-  searched_other_ = other_mesh_.points;
-  if (!(reach < kInfinity) || options_.rule != ContactRule::nodal) return {};
-  std::vector<char> wanted(multiplier_.size(), 0);
-  for (std::size_t s = 0; s < samples_.size(); ++s) {
-    if (clearance_[s] > reach) continue;
-    for (int k = 0; k < 3; ++k) {
-      wanted[static_cast<std::size_t>(slave_.triangles(samples_[s].triangle, k))] = 1;
-    }
-  }
-  return wanted;
-}
-
-/// How far a sample's pair can come together: by its distance, unless it is inside already.
-double SurfaceContact::clearance(const ContactPair& pair, const Vec3& point,
-                                 double distance) const {
-  const double gap = pair.normal.dot(point - other_point(pair, other_mesh_.points)) - pair.offset;
-  return std::min(gap, distance);
-}
-
-void SurfaceContact::update_pairs(const VecX& x, double reach) {
-  prepare_other(x);
-  const TriMesh slave{surface_points(slave_, x), slave_.triangles};
-  const bool at_vertices = options_.quadrature == ContactQuadrature::vertices;
-  const Points facet_normals = triangle_normals(slave);
-  const Points normals = at_vertices ? vertex_normals(slave) : Points();
-  const OtherSurface other{*tree_, other_normals_, boundary_edge_, boundary_vertex_};
-  if (options_.quadrature == ContactQuadrature::cut) {
-    samples_ = cut_samples(slave, facet_normals, *tree_, options_.search_distance);
-  } else {
-    update_areas(triangle_areas(slave));
-  }
-
-  if (nearest_.size() != samples_.size()) nearest_.assign(samples_.size(), -1);
-  if (clearance_.size() != samples_.size()) clearance_.assign(samples_.size(), -kInfinity);
-  const std::vector<char> wanted = owners_within(reach, slave.points);
-  std::vector<std::optional<ContactPair>> found(samples_.size());
-  parallel_for(n_samples(), [&](Index sample_index) {
-    const auto s = static_cast<std::size_t>(sample_index);
-    const ContactSample& sample = samples_[s];
-    const auto is_wanted = [&](Index v) { return wanted[static_cast<std::size_t>(v)] != 0; };
-    const auto corners = slave_.triangles.row(sample.triangle);
-    if (!wanted.empty() && std::none_of(corners.begin(), corners.end(), is_wanted)) return;
-    Vec3 point = Vec3::Zero(), vertex_normal = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) {
-      const Index v = slave_.triangles(sample.triangle, k);
-      point += sample.barycentric[k] * slave.points.row(v).transpose();
-      if (at_vertices) vertex_normal += sample.barycentric[k] * normals.row(v).transpose();
-    }
-    const Vec3 normal =
-        (at_vertices ? vertex_normal : facet_normals.row(sample.triangle).transpose()).normalized();
-    const auto [faced, distance] = find_faced_point(other, point, normal, nearest_[s], options_);
-    nearest_[s] = faced ? faced->nearest : -1;
-    if (!faced) {
-      // what is near but not faced may come to be faced anywhere
-      clearance_[s] = distance < kInfinity ? -kInfinity : options_.search_distance;
-      return;
-    }
-    const double bulges =
-        bulge(slave_bulge_, sample.triangle, sample.barycentric) * -normal.dot(faced->normal) +
-        bulge(other_bulge_, faced->triangle, faced->barycentric);
-    found[s] = {sample_index,
-                faced->triangle,
-                faced->barycentric,
-                faced->normal,
-                options_.minimum_gap + bulges,
-                faced->share};
-    clearance_[s] = clearance(*found[s], point, distance);
-  });
-
-  pairs_.clear();
-  for (const auto& pair : found) {
-    if (pair) pairs_.push_back(*pair);
-  }
-  constraints_.clear();
-  stencil_particles_.clear();
-  stencil_vectors_.clear();
-  if (options_.rule == ContactRule::pointwise) {
-    make_pointwise_constraints();
-  } else {
-    make_nodal_constraints(wanted);
-  }
 }
 
 }  // namespace coxa::collide

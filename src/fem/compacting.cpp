@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "cofactor.h"
+#include "lanes.h"
 #include "point_blocks.h"
 
 namespace coxa::fem {
@@ -34,6 +35,18 @@ class Compacting : public Material {
     const double energy = law_->energy_with_piola(F, P);
     add_piola(F, P);
     return energy + 0.5 * compaction_.bulk * excess(F) * excess(F);
+  }
+
+  void energies_with_piolas(const LaneMat3& F, LaneMat3& P, double* energy) const override {
+    law_->energies_with_piolas(F, P, energy);
+    if (least_determinant(F) >= compaction_.volume_ratio) return;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Mat3 own = matrix_of(F, lane);
+      Mat3 stress = matrix_of(P, lane);
+      add_piola(own, stress);
+      set_matrix(P, lane, stress);
+      energy[lane] += 0.5 * compaction_.bulk * excess(own) * excess(own);
+    }
   }
 
   // d(-bulk e C) = bulk C (C : dF) - bulk e dC, with e = J0 - J and C = dJ/dF; the first part is

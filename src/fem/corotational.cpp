@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "lame_check.h"
+#include "lanes.h"
 #include "mode_tensors.h"
 #include "point_blocks.h"
 #include "polar_rotation.h"
@@ -45,6 +46,18 @@ class Corotational : public PrincipalMaterial {
     const double sum = R->cwiseProduct(change).sum();
     P = 2.0 * lame_.mu * change + lame_.lambda * sum * *R;
     return lame_.mu * change.squaredNorm() + 0.5 * lame_.lambda * sum * sum;
+  }
+
+  void energies_with_piolas(const LaneMat3& F, LaneMat3& P, double* energy) const override {
+    LaneMat3 R;
+    const unsigned flat = polar_rotations(F, R);
+    corotational_response(lame_, F, R, P, energy);
+    for (int lane = 0; flat != 0 && lane < kLanes; ++lane) {
+      if ((flat >> lane & 1U) == 0) continue;
+      const Mat3 own = matrix_of(F, lane);
+      set_matrix(P, lane, PrincipalMaterial::first_piola(own));
+      energy[lane] = PrincipalMaterial::energy_density(own);
+    }
   }
 
   // dP = 2 mu dF + lambda (R : dF) R + turning dR, where for dF = d r_b

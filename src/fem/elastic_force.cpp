@@ -21,6 +21,10 @@ ElasticForce::~ElasticForce() = default;
 std::vector<std::pair<Index, Index>> ElasticForce::pattern() const { return assembly_->pattern(); }
 
 void ElasticForce::add_force(const VecX& x, const VecX&, VecX& force) const {
+  if (assembly_->n_nodes() == 4) {
+    assembly_->add_force_in_lanes(*material_, x, force);
+    return;
+  }
   assembly_->add_force(
       [&](Index e, int q) { return material_->first_piola(assembly_->gradient_of(x, e, q)); },
       force);
@@ -43,6 +47,7 @@ double ElasticForce::energy(const VecX& x) const {
 }
 
 double ElasticForce::add_force_with_energy(const VecX& x, VecX& force) const {
+  if (assembly_->n_nodes() == 4) return assembly_->add_force_in_lanes(*material_, x, force);
   VecX energy = VecX::Zero(n_elements());
   assembly_->add_force(
       [&](Index e, int q) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "lanes.h"
 #include "scatter.h"
 
 namespace coxa::fem {
@@ -74,6 +75,9 @@ class ElementAssembly {
     });
     scatter_.gather_force(part, force);
   }
+
+  /// Adds the forces of four-node elements, four at a time, and returns the sum of their energies.
+  double add_force_in_lanes(const Material& material, const VecX& x, VecX& force) const;
 
   /// Gradients of the shape functions at point q of element e.
   std::span<const Vec3> shape_gradients(Index e, int q) const {

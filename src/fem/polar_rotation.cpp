@@ -6,13 +6,6 @@
 namespace coxa::fem {
 namespace {
 
-// where the sums of two stretches multiply to less than this share of what equal stretches of the
-// same size would give, the rotation is left to the singular values
-constexpr double kFlattest = 0.02;
-// a step so small leaves an error of its square
-constexpr double kLastStep = 1e-8;
-constexpr int kMaxSteps = 40;
-
 /// The matrix of cofactors: det(X) times the inverse transposed.
 Mat3 cofactors(const Mat3& X) {
   Mat3 C;

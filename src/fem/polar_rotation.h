@@ -6,6 +6,13 @@
 
 namespace coxa::fem {
 
+// where the sums of two stretches multiply to less than this share of what equal stretches of the
+// same size would give, the rotation is left to the singular values
+inline constexpr double kFlattest = 0.02;
+// Newton's iteration for the sum of the stretches: a step so small leaves an error of its square
+inline constexpr double kLastStep = 1e-8;
+inline constexpr int kMaxSteps = 40;
+
 /// The rotation R of F = R U with U symmetric and at most its smallest stretch negative: the
 /// slope of the sum of the stretches by F, in closed form from the invariants of F.
 ///

@@ -47,9 +47,15 @@ BoneLimit::BoneLimit(const JointModel& model, const TriMesh& fixed) {
 }
 
 double BoneLimit::clearance(const RigidTransform& X_II) const {
-  if (!pair_) return kNaN;
-  const double distance = pair_->clearance(X_II, kLookAround).distance;
-  return std::isfinite(distance) ? distance : kNaN;
+  const auto found = nearest(X_II, kLookAround);
+  return found ? found->distance : kNaN;
+}
+
+std::optional<collide::Clearance> BoneLimit::nearest(const RigidTransform& X_II,
+                                                     double reach) const {
+  if (!pair_) return std::nullopt;
+  const collide::Clearance found = pair_->clearance(X_II, reach);
+  return std::isfinite(found.distance) ? std::optional(found) : std::nullopt;
 }
 
 collide::FirstContact BoneLimit::first_touch(

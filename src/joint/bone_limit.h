@@ -18,6 +18,8 @@ class BoneLimit {
 
   /// Least distance of the two at a pose, mm, negative overlap; NaN where they are not near.
   double clearance(const RigidTransform& X_II) const;
+  /// Where the two are nearest, looked for up to `reach` mm; nullopt where they are not near.
+  std::optional<collide::Clearance> nearest(const RigidTransform& X_II, double reach) const;
   /// Where on the way from `apart` to `together` (which overlaps) the two first touch.
   collide::FirstContact first_touch(const std::function<RigidTransform(double)>& pose_at) const;
 

@@ -30,7 +30,9 @@ constexpr double kStalePairs = 0.03;
 // residual tolerance is tightened no further than by this for the sake of the net force
 constexpr double kFinestNewton = 0.03;
 // while a state settles, nodes of wider gaps than this are left alone, mm
-constexpr double kReach = 0.2;
+constexpr double kReach = 0.2, kReachByHand = 0.05;
+// articular surfaces that face each other are hardly steeper to each other than 17 degrees
+constexpr double kSlideByHand = 0.3;
 // a state that is only passed through may be so much less exact, one led by hand still less: a
 // fiftieth of the joint force is left to the next step
 constexpr double kSlackOnTheWay = 20.0, kSlackByHand = 100.0, kOverlapSlack = 10.0;
@@ -60,7 +62,7 @@ Equilibrium::Equilibrium(const HipSystem& system, LoadMode mode, const JointOpti
       options_(options),
       free_(system.free_particles(mode)),
       elastic_(system),
-      tangent_(free_, system) {}
+      tangent_(free_, dynamics::total_pattern(system.elastic())) {}
 
 void ElasticState::update(const VecX& x) {
   if (x_.size() == x.size() && x_ == x) return;
@@ -101,7 +103,7 @@ SolveReport Equilibrium::relax(HipState& state, const Vec3& force, double tolera
       .step =
           [&](const VecX& x, const VecX& r) {
             if (tangent_age_ == 0 || tangent_age_ > kTangentAge) {
-              tangent_.update_elastic(system_, x);
+              tangent_.update_elastic(system_.elastic(), x);
               tangent_age_ = 0;
             }
             ++tangent_age_;
@@ -224,7 +226,9 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
       .residual = slack * options_.residual_tolerance,
       .imbalance = slack * kImbalance * options_.residual_tolerance,
       .penetration = std::min(slack, kOverlapSlack) * options_.penetration_tolerance};
-  const double newton_share = exactness == Exactness::by_hand ? kNewtonShareByHand : kNewtonShare;
+  const bool by_hand = exactness == Exactness::by_hand;
+  const double reach = by_hand ? kReachByHand : kReach, slide = by_hand ? kSlideByHand : 1.0;
+  const double newton_share = by_hand ? kNewtonShareByHand : kNewtonShare;
   int iterations = 0;
   std::string reason;
   Relaxation relaxation;
@@ -233,7 +237,7 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
   state.contact.clear_stiffening();
   for (int round = 0;; ++round) {
     monitor.check_cancelled();
-    state.contact.update_pairs(state.x, kReach);
+    state.contact.update_pairs(state.x, reach, slide);
     Settling settling = judge(state, force, limits);
     settling.iterations = iterations;
     if (settling.converged) {
@@ -268,8 +272,7 @@ Settling Equilibrium::settle(HipState& state, const Vec3& force, Exactness exact
     if (!newton.converged) tangent_age_ = 0;
     reason = newton.reason;
     // by hand the pairs of one search will do
-    const bool taken_as_it_is =
-        exactness == Exactness::by_hand && newton.converged && newton.residual <= limits.residual;
+    const bool taken_as_it_is = by_hand && newton.converged && newton.residual <= limits.residual;
     if (!taken_as_it_is) state.x = relaxation.next(before, state.x);
     const double way = state.x.segment<3>(3 * system_.translation()).norm();
     if (!(way <= options_.max_translation)) {

@@ -29,7 +29,6 @@ void fill_contact(FrameResult& frame, const std::vector<collide::ContactSample>&
   for (const collide::ContactSample& sample : touching) contact.contact_area += sample.area;
   contact.peak_pressure_p99 = pressure_percentile(touching, 0.99);
   contact.peak_pressure_p95 = pressure_percentile(touching, 0.95);
-  contact.peak_pressure_patch = patch_peak(samples, kPatchArea);
   contact.contact_share = contact.contact_area / total_area;
   if (contact.contact_area > 0.0) {
     contact.mean_pressure = total_force / contact.contact_area;
@@ -201,13 +200,13 @@ Reactions bone_reactions(const HipSystem& system, const VecX& force) {
   return reactions;
 }
 
-void update_figures(FrameResult& frame, const JointModel& model, const HipSystem& system,
-                    Equilibrium& equilibrium, const HipState& state,
-                    const SocketElements& elements) {
+std::vector<collide::ContactSample> update_contact_figures(
+    FrameResult& frame, const JointModel& model, const HipSystem& system, Equilibrium& equilibrium,
+    const HipState& state, const ClockFace& clock) {
   const collide::SurfaceContact& cartilages = state.contact.cartilages();
-  const std::vector<collide::ContactSample> samples = cartilages.samples(state.x);
+  std::vector<collide::ContactSample> samples = cartilages.samples(state.x);
   fill_displacements(frame, model, system, state);
-  fill_contact(frame, samples, samples_in_contact(system, state, samples), elements.clock);
+  fill_contact(frame, samples, samples_in_contact(system, state, samples), clock);
   fill_socket_nodes(frame, cartilages, samples, system.n_acetabular());
   add_bare_femur(frame, state.contact, state.x);
   fill_head_nodes(frame, model, system, state);
@@ -238,7 +237,15 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
     const Vec3 left = balance.contact_force - balance.applied_force - balance.ligament_force;
     balance.force_error = left.norm() / balance.applied_force.norm();
   }
+  return samples;
+}
 
+void update_figures(FrameResult& frame, const JointModel& model, const HipSystem& system,
+                    Equilibrium& equilibrium, const HipState& state,
+                    const SocketElements& elements) {
+  const std::vector<collide::ContactSample> samples =
+      update_contact_figures(frame, model, system, equilibrium, state, elements.clock);
+  frame.contact.peak_pressure_patch = patch_peak(samples, kPatchArea);
   find_crushed(frame.crush, model.acetabular_cartilage, system.socket_elasticity(), state.x, false);
   find_crushed(frame.crush, model.femoral_cartilage, system.femur_elasticity(), state.x, true);
 

@@ -14,7 +14,15 @@ struct SocketElements {
 };
 SocketElements socket_elements(const JointModel& model);
 
-/// Fills what a converged frame reports: nodal fields, contact, balance, sectors.
+/// Fills what changes from moment to moment while a hand leads: nodal fields, contact but for the
+/// peak over a patch, balance.
+/// @returns the samples of the cartilages' contact
+std::vector<collide::ContactSample> update_contact_figures(
+    FrameResult& frame, const JointModel& model, const HipSystem& system, Equilibrium& equilibrium,
+    const HipState& state, const ClockFace& clock);
+
+/// Fills all that a converged frame reports: those, the peak over a patch, crushed elements,
+/// sectors.
 void update_figures(FrameResult& frame, const JointModel& model, const HipSystem& system,
                     Equilibrium& equilibrium, const HipState& state,
                     const SocketElements& elements);

@@ -17,8 +17,12 @@ Vec3 force_on_slave(const collide::SurfaceContact& contact, const VecX& x) {
 
 }  // namespace
 
-void HipContact::update_pairs(const VecX& x, double reach) {
-  for_each(*this, [&](collide::SurfaceContact& contact) { contact.update_pairs(x, reach); });
+void HipContact::update_pairs(const VecX& x, double reach, double slide) {
+  for_each(*this, [&](collide::SurfaceContact& contact) { contact.update_pairs(x, reach, slide); });
+}
+
+void HipContact::forget_clearances() {
+  for_each(*this, [](collide::SurfaceContact& contact) { contact.forget_clearances(); });
 }
 
 void HipContact::update_multipliers(const VecX& x, double tolerance) {

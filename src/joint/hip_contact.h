@@ -22,7 +22,8 @@ class HipContact {
   const std::optional<collide::SurfaceContact>& femur() const { return femur_; }
 
   /// As of `collide::SurfaceContact`, for all.
-  void update_pairs(const VecX& x, double reach = kInfinity);
+  void update_pairs(const VecX& x, double reach = kInfinity, double slide = 1.0);
+  void forget_clearances();
   void update_multipliers(const VecX& x, double tolerance);
   void clear_stiffening();
   void clear_multipliers();

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <chrono>
 
-#include "bone_limit.h"
 #include "equilibrium.h"
 #include "frame_figures.h"
+#include "led_limit.h"
 #include "predictor.h"
 
 namespace coxa::joint {
@@ -21,13 +21,22 @@ JointOptions live_options() {
   return options;
 }
 
+namespace {
+
+void note_clearances(LiveHip::Step& step) {
+  if (step.bone) step.frame.bone_clearance = step.bone->clearance;
+  if (step.labrum) step.frame.labrum_clearance = step.labrum->clearance;
+}
+
+}  // namespace
+
 struct LiveHip::Impl {
   const JointModel& model;
   LoadMode mode;
   Vec3 force;  // image axes; NaN with a prescribed pose
   JointOptions rough = live_options(), exact;
   HipSystem system;
-  BoneLimit limit;
+  LedLimit bones, labrum;
   Equilibrium rough_equilibrium, exact_equilibrium;
   SocketElements elements;
   HipState state, trial;  // the trial keeps its storage from step to step
@@ -39,7 +48,8 @@ struct LiveHip::Impl {
         force(mode == LoadMode::force ? Vec3(hip.X_IP.R * load.force_P.row(0).transpose())
                                       : Vec3::Constant(kNaN)),
         system(hip),
-        limit(hip),
+        bones(hip, hip.hip_bone),
+        labrum(hip, hip.labrum),
         rough_equilibrium(system, mode, rough),
         exact_equilibrium(system, mode, exact),
         elements(socket_elements(hip)),
@@ -60,6 +70,7 @@ struct LiveHip::Impl {
     return motion::angles_from_rotation(model.X_IP.R.transpose() * pose.R * model.X_IF.R,
                                         model.side);
   }
+  std::optional<NearPlace> nearest(LedLimit& limit, const RigidTransform& X_II) const;
   FrameResult solve(const BonePose& target, Exactness exactness, const Monitor& monitor);
   Step attempt(const BonePose& next, const Monitor& monitor);
 };
@@ -68,8 +79,11 @@ FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
                                  const Monitor& monitor) {
   const auto start = std::chrono::steady_clock::now();
   Equilibrium& equilibrium = exactness == Exactness::result ? exact_equilibrium : rough_equilibrium;
+  bool careful = exactness == Exactness::result;
   const auto attempt = [&] {
     trial = state;
+    // a result does not depend on what was taken for too far to touch
+    if (careful) trial.contact.forget_clearances();
     if (exactness == Exactness::by_hand) {
       // what presses by overlap presses without it from now on: multipliers follow the movement
       trial.contact.update_multipliers(trial.x, kInfinity);
@@ -80,8 +94,9 @@ FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
     return equilibrium.settle(trial, force, exactness, monitor);
   };
   Settling settling = attempt();
-  if (!settling.converged && predictor.has_rate()) {
-    // once more without the guess where the movement leads
+  if (!settling.converged && !careful) {
+    // once more without guesses where the movement leads and what is too far to touch
+    careful = true;
     predictor.forget();
     settling = attempt();
   }
@@ -100,7 +115,10 @@ FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
   if (settling.converged) {
     frame.translation = found();
     frame.balance.applied_force = force;
-    update_figures(frame, model, system, equilibrium, state, elements);
+    if (exactness == Exactness::result)
+      update_figures(frame, model, system, equilibrium, state, elements);
+    else
+      update_contact_figures(frame, model, system, equilibrium, state, elements.clock);
   }
   frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return frame;
@@ -134,26 +152,36 @@ LiveHip::Step LiveHip::step_towards(const motion::HipAngles& target, const Monit
   return step;
 }
 
+std::optional<LiveHip::NearPlace> LiveHip::Impl::nearest(LedLimit& limit,
+                                                         const RigidTransform& X_II) const {
+  const auto found = limit.nearest(X_II);
+  if (!found) return std::nullopt;
+  return NearPlace{found->distance, found->fixed_point, elements.clock.hour(found->fixed_point)};
+}
+
 /// A step to a pose, unless the bones would meet there.
 LiveHip::Step LiveHip::Impl::attempt(const BonePose& next, const Monitor& monitor) {
-  const double clearance = limit.clearance(placed(next));
   Step step;
-  if (clearance < 0.0) {
+  step.bone = nearest(bones, placed(next));
+  step.labrum = nearest(labrum, placed(next));
+  if (step.bone && step.bone->clearance < 0.0) {
     step.frame.status = FrameStatus::beyond_bony_limit;
-    step.frame.reason = join_text("the bones would overlap by ", -clearance, " mm");
+    step.frame.reason = join_text("the bones would overlap by ", -step.bone->clearance, " mm");
     step.frame.X_II = placed(state.pose);
     step.frame.angles = angles_of(state.pose);
   } else {
     step.frame = solve(next, Exactness::by_hand, monitor);
   }
-  step.frame.bone_clearance = clearance;
+  note_clearances(step);
   return step;
 }
 
-FrameResult LiveHip::settle(const Monitor& monitor) {
-  FrameResult frame = impl_->solve(impl_->state.pose, Exactness::result, monitor);
-  frame.bone_clearance = impl_->limit.clearance(frame.X_II);
-  return frame;
+LiveHip::Step LiveHip::settle(const Monitor& monitor) {
+  Step step{impl_->solve(impl_->state.pose, Exactness::result, monitor), true, {}, {}};
+  step.bone = impl_->nearest(impl_->bones, step.frame.X_II);
+  step.labrum = impl_->nearest(impl_->labrum, step.frame.X_II);
+  note_clearances(step);
+  return step;
 }
 
 }  // namespace coxa::joint

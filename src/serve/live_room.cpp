@@ -50,7 +50,7 @@ joint::LiveHip::Step LiveRoom::Guest::solve(const Question& question) {
   Monitor monitor;
   if (!question.exact) return hip->step_towards(question.target, monitor);
   monitor.cancel_flag = &interrupt;
-  return {hip->settle(monitor), true};
+  return hip->settle(monitor);
 }
 
 std::string LiveRoom::Guest::packed(const Question& question, const joint::LiveHip::Step& step,

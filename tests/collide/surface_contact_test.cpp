@@ -337,6 +337,31 @@ TEST(SurfaceContactReach, LosesNothingOnALongWayOfShortSteps) {
   EXPECT_LT(n_pressing, 30);
 }
 
+TEST(SurfaceContactReach, LosesNothingWhereSurfacesSlideAlongEachOther) {
+  // the ball rolls over the other in steps of half a degree about the other's middle
+  const auto make = [] { return ball_contact({ContactNormal::smooth, ContactRule::nodal}); };
+  SurfaceContact led = make(), careful = make();
+  VecX x = ball_x;
+  led.update_pairs(x);
+  careful.update_pairs(x);
+  const Vec3 middle(0.3, 0.4, 18.5);
+  const Mat3 turn = Eigen::AngleAxisd(0.5 * kPi / 180.0, Vec3::UnitX()).matrix();
+  std::size_t n_led = 0, n_careful = 0;
+  for (int step = 0; step < 30; ++step) {
+    for (Index i = 0; i < ball.n_vertices(); ++i) {
+      const Vec3 arm = x.segment<3>(3 * i) - middle;
+      x.segment<3>(3 * i) = middle + turn * arm;
+    }
+    led.update_pairs(x, 0.05, 0.3);
+    careful.update_pairs(x, 0.05);
+    EXPECT_EQ(force_of(led, x), force_of(careful, x)) << "step " << step;
+    EXPECT_GT(force_of(led, x).norm(), 1.0);
+    n_led += led.constraints().size();
+    n_careful += careful.constraints().size();
+  }
+  EXPECT_LT(n_led, n_careful);
+}
+
 TEST(SurfaceContactReach, FindsWhatComesNearInOneStep) {
   SurfaceContact contact = ball_contact({ContactNormal::smooth, ContactRule::nodal});
   VecX far = ball_x;

@@ -3,8 +3,11 @@
 #include <coxa/joint/simulate.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
+#include "../../src/joint/bone_limit.h"
+#include "../../src/joint/led_limit.h"
 #include "joint/layers.h"
 #include "joint/movements.h"
 #include "support/shapes.h"
@@ -60,6 +63,55 @@ TEST(BonyLimit, ClearanceIsTheDistanceOfTheBones) {
   EXPECT_TRUE(std::isnan(result.frames[0].bone_clearance));  // not near
   const double apart = 2.0 * kReach * std::sin(0.5 * radians(11.0)) - 2.0 * kBall;
   EXPECT_NEAR(result.frames[1].bone_clearance, apart, 0.06);
+}
+
+TEST(BonyLimit, IsWatchedByALedHipAsByASimulation) {
+  const JointModel model = with_bones();
+  LedLimit led(model, model.hip_bone);
+  const BoneLimit limit(model);
+  int n_near = 0;
+  for (int k = 0; k <= 40; ++k) {
+    const Mat3 R = Eigen::AngleAxisd(-radians(k), Vec3::UnitX()).matrix();
+    const RigidTransform X_II{R, Vec3(0.01 * k, 0.0, 0.0)};
+    const auto found = led.nearest(X_II);
+    const double all_around = limit.clearance(X_II);
+    if (!found) {
+      EXPECT_FALSE(all_around < 3.0) << k;
+      continue;
+    }
+    EXPECT_EQ(found->distance, all_around) << k;
+    ++n_near;
+  }
+  EXPECT_GT(n_near, 9);
+}
+
+TEST(LabrumContact, IsToldWhileAHandLeads) {
+  // a ball in the way of the femur's at 20 degrees, another, of bone, at 40
+  JointModel model = with_bones();
+  const double at = radians(20.0);
+  const Vec3 place(0.0, -kReach * std::sin(at), -kReach * std::cos(at));
+  model.labrum = test::icosphere(3, kBall, place);
+  LiveHip hip(model, passive_examination(model, 200.0));
+  bool touched = false;
+  for (int k = 0; k < 60; ++k) {
+    const LiveHip::Step step = hip.step_towards({radians(50.0), 0.0, 0.0});
+    if (step.labrum) {
+      EXPECT_EQ(step.labrum->clearance, step.frame.labrum_clearance);
+      EXPECT_NEAR((step.labrum->point - place).norm(), kBall, 0.05);
+      touched = touched || step.labrum->clearance < 0.0;
+    }
+    if (step.frame.status == FrameStatus::beyond_bony_limit) {
+      // the labrum let it pass, the bone does not
+      EXPECT_TRUE(touched);
+      ASSERT_TRUE(step.bone.has_value());
+      EXPECT_LT(step.bone->clearance, 0.0);
+      EXPECT_NEAR(step.bone->hour, socket_clock(model).hour(step.bone->point), 1e-12);
+      EXPECT_NEAR(degrees(hip.angles().flexion), degrees(kStopAt - kTouch), 1.1);
+      return;
+    }
+    ASSERT_EQ(step.frame.status, FrameStatus::converged) << step.frame.reason;
+  }
+  FAIL() << "the bones never met";
 }
 
 TEST(BonyLimit, VerticesUnderTheCartilageDoNotCount) {

@@ -174,7 +174,7 @@ TEST(Ligaments, AreFeltByALiveHip) {
   const Ligament up{"up", {0, 0, 1e4}, {0, 0, 0}, 1.0, 1e4 - 200.0, 0.0};
   const JointModel model = with({up});
   LiveHip live(model, constant_force(300.0, Vec3(0, 1, 0)));
-  const FrameResult frame = live.settle();
+  const FrameResult frame = live.settle().frame;
   ASSERT_EQ(frame.status, FrameStatus::converged) << frame.reason;
   EXPECT_NEAR(frame.balance.contact_force.norm(), 500.0, 1.0);
 }

@@ -103,7 +103,13 @@ class SurfaceContact : public dynamics::Force {
   /// With a finite `reach` (mm; nodal rule) vertices that are farther than that from the other
   /// surface have no constraint, and those that cannot have come so near since they were last
   /// searched for cost nothing. What presses is the same either way.
-  void update_pairs(const VecX& x, double reach = kInfinity);
+  ///
+  /// With `slide` in (0, 1) the way of two paired surfaces across their normal counts for so much
+  /// only: their gap is taken not to change faster than that along them. Fewer are searched, and
+  /// what a steeper place brings near is found a step late.
+  void update_pairs(const VecX& x, double reach = kInfinity, double slide = 1.0);
+  /// Makes the next search look at every sample, whatever was known of its clearance.
+  void forget_clearances();
   /// Moves the obstacle's vertices; takes effect at the next update_pairs.
   void update_obstacle(const Points& points);
   /// Takes the surfaces as smooth with the curvature they have at x: from now on samples and the
@@ -146,7 +152,12 @@ class SurfaceContact : public dynamics::Force {
   void make_samples();
   void update_areas(const VecX& areas);
   void prepare_other(const VecX& x);
-  std::vector<char> owners_within(double reach, const Points& slave);
+  void update_clearances(const Points& slave, double slide);
+  std::vector<char> owners_within(double reach) const;
+  std::vector<Index> samples_of(const std::vector<char>& wanted) const;
+  void note_unpaired(std::size_t sample, const Vec3& point,
+                     const std::optional<NearestPoint>& nearest, bool outside);
+  std::optional<ContactPair> find_pair(Index sample, const Vec3& point, const Vec3& normal);
   double clearance(const ContactPair& pair, const Vec3& point, double distance) const;
   void append_entries(const ContactPair& pair, double share, Entries& entries) const;
   void append_constraint(ContactConstraint constraint, Entries& entries);
@@ -166,10 +177,11 @@ class SurfaceContact : public dynamics::Force {
   Points slave_bulge_, other_bulge_;        ///< per triangle and edge, mm; empty: flat facets
   std::vector<double> clearance_;           ///< per sample: no gap is smaller than this, mm
   Points searched_slave_, searched_other_;  ///< the surfaces at the last search
-  std::vector<Index> nearest_;      ///< per sample: nearest triangle of the last search, or -1
-  std::vector<double> multiplier_;  ///< per owner, MPa
-  std::vector<double> stiffening_;  ///< per owner, >= 1
-  std::vector<double> overlap_;     ///< per owner, mm, at the last update of multipliers
+  std::vector<Index> nearest_;         ///< per sample: nearest triangle of its last search, or -1
+  std::vector<Vec3> searched_normal_;  ///< per sample: of its last pair, or from the nearest point
+  std::vector<double> multiplier_;     ///< per owner, MPa
+  std::vector<double> stiffening_;     ///< per owner, >= 1
+  std::vector<double> overlap_;        ///< per owner, mm, at the last update of multipliers
   std::optional<TriangleTree> tree_;
   Eigen::Matrix<bool, Eigen::Dynamic, 3, Eigen::RowMajor> boundary_edge_;
   std::vector<bool> boundary_vertex_;

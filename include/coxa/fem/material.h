@@ -24,6 +24,8 @@ enum class Tangent {
   positive  ///< a positive semidefinite stand-in, equal to the derivative where that is positive
 };
 
+struct LaneMat3;  ///< four matrices side by side, src/fem/lanes.h
+
 /// A hyperelastic law: energy density as a function of the deformation gradient.
 class Material {
  public:
@@ -35,6 +37,9 @@ class Material {
   /// Both at once, which costs less for laws that need the same of F for either; returns the energy
   /// density and sets P, whatever it is where the energy is infinite.
   virtual double energy_with_piola(const Mat3& F, Mat3& P) const;
+  /// Both for four deformation gradients at once; sets four energy densities. Laws that can work on
+  /// them side by side do.
+  virtual void energies_with_piolas(const LaneMat3& F, LaneMat3& P, double* energy) const;
   /// dP/dF, 9×9 over the columns of F one after the other: entry (a + 3k, b + 3l) is dP_ak / dF_bl.
   virtual Mat9 tangent(const Mat3& F, Tangent kind) const = 0;
   /// Adds the blocks of an element's stiffness at one point: factor * r_a : tangent : r_b to block

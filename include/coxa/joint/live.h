@@ -3,7 +3,7 @@
 #include <coxa/joint/simulate.h>
 
 #include <memory>
-#include <string>
+#include <optional>
 
 namespace coxa::joint {
 
@@ -25,9 +25,18 @@ class LiveHip {
   LiveHip(const JointModel& model, const LoadCase& load);
   ~LiveHip();
 
+  /// Where the femur, outside its cartilage-covered head, is nearest to the hip bone or the labrum.
+  struct NearPlace {
+    double clearance = 0.0;  ///< mm, negative overlap
+    Vec3 point;              ///< mm, image frame, on the hip bone or labrum
+    double hour = 0.0;       ///< on the clock face
+  };
   struct Step {
-    FrameResult frame;    ///< at the pose reached; `angles` are those
-    bool arrived = true;  ///< false: another call goes further
+    /// At the pose reached; `angles` are those. Strains and sectors are those of `settle` alone.
+    FrameResult frame;
+    bool arrived = true;                    ///< false: another call goes further
+    std::optional<NearPlace> bone, labrum;  ///< nullopt where not near; where the bones would meet,
+                                            ///< as they would
   };
   /// Turns the femur at most one `max_rotation_step` of the way to `target` and finds the
   /// equilibrium there.
@@ -40,7 +49,7 @@ class LiveHip {
 
   /// Equilibrium at the present pose to the full tolerance of JointOptions.
   /// @throws Error cancelled, leaving the state as it was
-  FrameResult settle(const Monitor& monitor = {});
+  Step settle(const Monitor& monitor = {});
 
   /// Where the femur is.
   motion::HipAngles angles() const;
