@@ -62,7 +62,7 @@ Equilibrium::Equilibrium(const HipSystem& system, LoadMode mode, const JointOpti
       options_(options),
       free_(system.free_particles(mode)),
       elastic_(system),
-      tangent_(free_, dynamics::total_pattern(system.elastic())) {}
+      tangent_(free_, system) {}
 
 void ElasticState::update(const VecX& x) {
   if (x_.size() == x.size() && x_ == x) return;
@@ -103,7 +103,7 @@ SolveReport Equilibrium::relax(HipState& state, const Vec3& force, double tolera
       .step =
           [&](const VecX& x, const VecX& r) {
             if (tangent_age_ == 0 || tangent_age_ > kTangentAge) {
-              tangent_.update_elastic(system_.elastic(), x);
+              tangent_.update_elastic(system_, x);
               tangent_age_ = 0;
             }
             ++tangent_age_;
