@@ -54,7 +54,10 @@ std::vector<Label> labels_from_json(const fs::path& path) {
       label.value = std::stoi(value);
       label.name =
           entry.is_string() ? entry.get<std::string>() : entry.at("name").get<std::string>();
-      if (entry.is_object()) label.colour = entry.at("colour").get<std::array<double, 3>>();
+      if (entry.is_object()) {
+        label.colour = entry.at("colour").get<std::array<double, 3>>();
+        label.generic = entry.value("generic", false);
+      }
       labels.push_back(label);
     }
   } catch (const std::invalid_argument&) {
@@ -70,7 +73,9 @@ std::vector<Label> labels_from_json(const fs::path& path) {
 std::string format_names(const std::vector<Label>& labels) {
   Json json = Json::object();
   for (const Label& label : labels) {
-    json[std::to_string(label.value)] = {{"name", label.name}, {"colour", label.colour}};
+    Json& entry = json[std::to_string(label.value)];
+    entry = {{"name", label.name}, {"colour", label.colour}};
+    if (label.generic) entry["generic"] = true;
   }
   return json.dump(2) + "\n";
 }

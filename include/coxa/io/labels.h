@@ -14,6 +14,7 @@ struct Label {
   int value = 1;  ///< 1 to 255
   std::string name;
   std::array<double, 3> colour{0.5, 0.5, 0.5};  ///< red, green, blue in [0, 1]
+  bool generic = false;  ///< made from published anatomy, not seen in the image
 };
 
 /// Whole numbers on a grid, 0 background, and what they mean.
