@@ -2,17 +2,20 @@
 """Meshes the cartilages of ../shared/data/libhip (or other surfaces) and prints the figures against the limits asked for.
 
 usage: evaluate_meshing.py --coxa build/release/coxa [--shared ../shared] [--layers N] [--tets N] [--only TEXT,…]
-                           [--work DIR] [--all-cartilages | --bodies | --labels] [SURFACE …]
+                           [--work DIR] [--seconds N] [--all-cartilages | --bodies | --labels | --table] [SURFACE …]
 
 --bodies: bones, muscles, ligaments, labra and the cartilages other than libhip's, each at the size that coxa chooses; --labels: the
-largest piece of every label of ../shared/data/labels, its surface by marching cubes, evened.
+largest piece of every label of ../shared/data/labels, its surface by marching cubes, evened.  Every outcome is kept in DIR beside
+the mesh; --table meshes nothing and shows all kept outcomes by class of body.
 
 Figures by ../shared/eval/mesh_quality.py; time is processor time of `coxa mesh`, so that neighbours on the machine do not count,
 and memory its largest resident set.  Default limits without --layers: those of the paper mesh; with it: of the mechanics mesh.
 """
 import argparse
+import json
 import os
 import pathlib
+import resource
 import subprocess
 import sys
 
@@ -27,7 +30,7 @@ PAPER = {"tets": (20000, None, -1), "aspect_mean": (0.72, 0.77, 1), "aspect_p05"
 MECHANICS = {**PAPER, "tets": (90000, None, -1), "aspect_mean": (0.70, None, 1), "aspect_p05": (0.50, None, 1),
              "aspect_min": (0.15, None, 1), "seconds": (15, None, -1), "megabytes": (1000, None, -1)}
 # bodies of any size: no limit of elements or time
-BODY = {**PAPER, "tets": (300000, None, -1), "seconds": (60, None, -1), "megabytes": (1000, None, -1)}
+BODY = {**PAPER, "tets": (400000, None, -1), "seconds": (60, None, -1), "megabytes": (1000, None, -1)}
 FORMATS = {"tets": "6.0f", "inverted": "3.0f", "manifold": "3.0f", "dihedral_min": "6.1f", "dihedral_max": "6.1f", "seconds": "5.1f",
            "megabytes": "5.0f"}
 
@@ -36,6 +39,17 @@ def cartilages(shared, every):
     kinds = ("femoral", "acetabular", "sacroiliac") if every else ("femoral", "acetabular")
     folder = shared / "data/libhip"
     return sorted(p for kind in kinds for p in folder.glob(f"*/*/{kind}_cartilage.ply"))
+
+
+def class_of(name):
+    """Of a body, by the words in its name; labels carry a number, whatever is not named is a muscle."""
+    if name.rsplit("_", 1)[-1].isdigit():
+        return "labels"
+    kinds = {"labrum": "labra", "transverse_acetabular_ligament": "ligaments", "ligament": "ligaments",
+             "femoral_cartilage": "femoral and acetabular cartilages", "acetabular_cartilage": "femoral and acetabular cartilages",
+             "cartilage": "sacroiliac and pubic cartilages", "femur": "femora", "hip_bone": "hip bones", "sacrum": "sacra",
+             "patella": "patellae"}
+    return next((kind for word, kind in kinds.items() if word in name and "biceps" not in name and "quadratus" not in name), "muscles")
 
 
 def bodies(shared):
@@ -73,14 +87,20 @@ def label_surfaces(shared, work):
     return surfaces
 
 
-def run_mesh(coxa, surface, out, options):
+def run_mesh(coxa, surface, out, options, most_seconds):
     """Processor seconds, megabytes, whether the surface was repaired; raises RuntimeError with the program's last words."""
+    def stop_in_time():
+        if most_seconds:
+            resource.setrlimit(resource.RLIMIT_CPU, (most_seconds, most_seconds))
+
     command = [str(coxa), "mesh", "--surface", str(surface), "--out", str(out), *options]
     log = out.with_suffix(".log")
     with open(log, "w") as words:
-        process = subprocess.Popen(command, stdout=words, stderr=subprocess.STDOUT)
+        process = subprocess.Popen(command, stdout=words, stderr=subprocess.STDOUT, preexec_fn=stop_in_time)
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode < 0:
+        raise RuntimeError(f"stopped after {usage.ru_utime + usage.ru_stime:.0f} s of processor time")
     if process.returncode != 0:
         raise RuntimeError(log.read_text().strip().splitlines()[-1])
     repaired = f"warning: {surface}" in log.read_text()
@@ -127,6 +147,28 @@ def text_of(key, value):
     return format(value, FORMATS.get(key, "6.3f"))
 
 
+def print_table(work, limits):
+    """One row a class: how many were run, which limits how many of them miss, the worst (and median) figures."""
+    classes = {}
+    for path in sorted(work.glob("*.figures.json")):
+        outcome = json.loads(path.read_text())
+        classes.setdefault(class_of(path.name.split(".")[0]), []).append(outcome)
+    shown = ("tets", "aspect_mean", "aspect_p05", "aspect_min", "dihedral_min", "dihedral_max", "envelope_rms", "envelope_max", "seconds")
+    print("| class | run | miss a limit |", " | ".join(shown), "|")
+    print("|---" * (3 + len(shown)) + "|")
+    for kind, outcomes in sorted(classes.items()):
+        rows = [o for o in outcomes if "failed" not in o]
+        over = [k for r in rows for k in missed(r, limits, 0)] + ["no mesh"] * (len(outcomes) - len(rows))
+        n_bad = sum(bool(missed(r, limits, 0)) for r in rows) + len(outcomes) - len(rows)
+        words = ", ".join(f"{k} {over.count(k)}" for k in sorted(set(over)))
+        cells = []
+        for k in shown if rows else ():
+            values = [r[k] for r in rows]
+            worst = min(values) if limits[k][2] > 0 else max(values)
+            cells.append(f"{text_of(k, worst).strip()} ({text_of(k, np.median(values)).strip()})")
+        print(f"| {kind} | {len(outcomes)} | {n_bad}{': ' + words if words else ''} |", " | ".join(cells), "|")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--coxa", type=pathlib.Path, default=ROOT / "build/release/coxa")
@@ -138,8 +180,13 @@ def main():
     parser.add_argument("--all-cartilages", action="store_true", help="sacroiliac ones too")
     parser.add_argument("--bodies", action="store_true", help="all but libhip's femoral and acetabular cartilages")
     parser.add_argument("--labels", action="store_true", help="surfaces of the label maps")
+    parser.add_argument("--table", action="store_true", help="of the outcomes kept in --work")
+    parser.add_argument("--seconds", type=int, help="of processor time after which a body is given up")
     parser.add_argument("surfaces", nargs="*", type=pathlib.Path)
     arguments = parser.parse_args()
+    if arguments.table:
+        print_table(arguments.work, BODY)
+        return 0
     sys.path.insert(0, str(arguments.shared / "eval"))
     import mesh_quality as judge
 
@@ -159,14 +206,16 @@ def main():
         if wanted and not any(w in name for w in wanted):
             continue
         n_surfaces += 1
-        out = arguments.work / f"{name}.vtu"
+        out, kept = arguments.work / f"{name}.vtu", arguments.work / f"{name}.figures.json"
         try:
-            seconds, megabytes, repaired = run_mesh(arguments.coxa, surface, out, options)
+            seconds, megabytes, repaired = run_mesh(arguments.coxa, surface, out, options, arguments.seconds)
             figures = {**figures_of(judge, out, surface, repaired), "seconds": seconds, "megabytes": megabytes}
         except RuntimeError as error:
             print(f"{name:34s} FAILED {error}", flush=True)
+            kept.write_text(json.dumps({"failed": str(error)}))
             failures += 1
             continue
+        kept.write_text(json.dumps(figures, default=float))
         rows.append(figures)
         over = missed(figures, limits, 0)
         failures += bool(over)

@@ -2,14 +2,19 @@
 
 #include <coxa/core/error.h>
 #include <coxa/geom/triangle_tree.h>
+#include <coxa/mesh/measures.h>
+#include <coxa/mesh/vertex_normals.h>
 
 #include <Eigen/Geometry>
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace coxa::meshing {
 namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 struct FaceSums {
   double area = 0.0;
@@ -56,6 +61,35 @@ FaceDistances update_bone_side(TetMesh& mesh, const TriMesh& bone) {
     std::swap(result.bone_side, result.articular_side);
   }
   return result;
+}
+
+double tag_bone_side(TetMesh& mesh, const TriMesh& bone) {
+  constexpr double kAttached = 1.0;  // mm, less than cartilage is thick
+  constexpr double kLooks = 0.5;     // cosine between the normals
+  constexpr double kLayer = 0.25;    // of the boundary's area
+  require(!bone.empty(), "bone surface has no triangle");
+  const TriangleTree tree(bone.points, bone.triangles);
+  const Points bone_normals = triangle_normals(bone);
+  const TriMesh boundary{mesh.points, mesh.facets};
+  const Points normals = triangle_normals(boundary);
+  const VecX areas = triangle_areas(boundary);
+  std::vector<FacetTag> tags(at(mesh.facets.rows()), FacetTag::rim);
+  double on_bone = 0.0;
+  for (Index f = 0; f < mesh.facets.rows(); ++f) {
+    const Vec3 middle = mesh.points(mesh.facets.row(f), Eigen::all).colwise().mean();
+    const NearestPoint near = tree.nearest(middle);
+    const double along = normals.row(f).dot(bone_normals.row(near.triangle));
+    if (along > kLooks) tags[at(f)] = FacetTag::articular_side;
+    if (along < -kLooks && near.squared_distance <= kAttached * kAttached) {
+      tags[at(f)] = FacetTag::bone_side;
+      on_bone += areas[f];
+    }
+  }
+  const bool layer = on_bone >= kLayer * areas.sum();
+  for (FacetTag& tag : tags)
+    if (!layer && tag != FacetTag::bone_side) tag = FacetTag::untagged;
+  mesh.facet_tags = std::move(tags);
+  return on_bone;
 }
 
 void update_bone_side(TetMesh& mesh, BoneFace face) {

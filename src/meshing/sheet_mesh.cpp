@@ -88,6 +88,16 @@ void bring_back_inverted(Extrusion& made, const SlideGuide& guide, MeshingReport
         join_text(dropped, " crumpled cells were left out, of ", made.cells.size()));
 }
 
+// A grid far from filling the body, or that misses the surface by more than cartilage is thick, is
+// not worth improving where another method may be taken.
+void check_worth_improving(const TetGrid& grid, const TriMesh& surface,
+                           const MeshingOptions& options) {
+  constexpr double kFarOff = 4.0;  // mm
+  if (options.method != Method::automatic || options.layers || options.max_tets) return;
+  if (const double envelope = envelope_error(grid, surface); envelope > kFarOff)
+    fail(ErrorCode::below_quality, "the medial grid misses the surface by ", envelope, " mm");
+}
+
 // ridges and tips that are cut off; flips and splits would leave the layers asked for
 void cover_and_raise(TetGrid& grid, const TriMesh& surface, const SlideGuide& guide,
                      const MeshingOptions& options) {
@@ -117,6 +127,7 @@ MeshingResult mesh_sheet(const TriMesh& surface, const medial::SurfaceSides& sid
   const SheetGuide guide(surface, sides, faces, options.rim_rounding);
   Extrusion made = extrude_within(faces, guide, options, part_of(monitor, "medial grid", 0.0, 0.6));
   bring_back_inverted(made, guide, result.report);
+  check_worth_improving(made.grid, surface, options);
   improve(made.grid, guide, options.improvement_rounds, part_of(monitor, "improve", 0.6, 1.0));
   if (!options.layers && options.improvement_rounds > 0) {
     for (int k = 0; k < 3; ++k) {

@@ -16,6 +16,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -24,12 +26,13 @@ namespace {
 
 constexpr double kFlatness = 0.15;     // mm, wanted; more where that asks for too many elements
 constexpr double kShapeShare = 0.003;  // of the diagonal of the bounding box: flatness at most
-constexpr double kSmallest = 2.0;      // times the flatness: edge of the smallest cubes
+constexpr double kSmallest = 2.0;      // times the flatness wanted: edge of the smallest cubes
+constexpr double kMostUneven = 2.5;    // flatness over that wanted up to which cubes stay as small
 constexpr double kLargest = 0.08;      // of the diagonal: edge of the largest cubes at the surface
 constexpr double kCoarser = 1.3;       // growth of the flatness when elements are too many
 constexpr int kSizeTries = 24;
 constexpr int kMostTets = 200000;       // at first
-constexpr int kMostFinerTets = 300000;  // where finer cubes are needed to meet the surface
+constexpr int kMostFinerTets = 400000;  // where finer cubes are needed to meet the surface
 
 // A lattice within the surface and the cubes it comes from.
 struct Filling {
@@ -37,28 +40,50 @@ struct Filling {
   TetGrid grid;
 };
 
-Filling fill(const TriMesh& surface, const TriangleTree& tree, const OctreeOptions& cubes) {
-  Octree octree(surface, cubes);
-  TetGrid grid = stuffed(make_lattice(octree), tree);
-  return {std::move(octree), std::move(grid)};
-}
+// Fills a surface from cubes unless they are sure to give too many elements, which their number
+// tells once a first filling is known.
+class Filler {
+ public:
+  Filler(const TriMesh& surface, const TriangleTree& tree) : surface_(surface), tree_(tree) {}
 
-OctreeOptions cubes_for(const TriMesh& surface, double flatness) {
+  // share of the elements allowed that the cubes give, about; the filling is left out where that is
+  // clearly more than one
+  std::pair<double, std::optional<Filling>> fill(const OctreeOptions& cubes, int max_tets) {
+    constexpr double kClearly = 1.15;
+    Octree octree(surface_, cubes);
+    const auto n_cubes = static_cast<double>(octree.cells().size());
+    const double guess = tets_per_cube_ * n_cubes / max_tets;
+    if (guess > kClearly) return {guess, std::nullopt};
+    TetGrid grid = stuffed(make_lattice(octree), tree_);
+    const auto n_tets = static_cast<double>(grid.tets.size());
+    tets_per_cube_ = n_tets / n_cubes;
+    return {n_tets / max_tets, Filling{std::move(octree), std::move(grid)}};
+  }
+
+ private:
+  const TriMesh& surface_;
+  const TriangleTree& tree_;
+  double tets_per_cube_ = 0.0;  // of the last filling
+};
+
+// where elements are too many, those of smooth parts grow first, then those of thin parts and
+// ridges
+OctreeOptions cubes_for(const TriMesh& surface, double wanted, double flatness) {
   return {.flatness = flatness,
-          .smallest = kSmallest * flatness,
+          .smallest = kSmallest * std::max(wanted, flatness / kMostUneven),
           .largest = std::max(kLargest * bounds(surface.points).diagonal(), 4.0 * flatness)};
 }
 
 // lattice of as many elements as allowed
-Filling fill_within(const TriMesh& surface, const TriangleTree& tree, int max_tets,
-                    OctreeOptions& cubes, const Monitor& monitor) {
-  double flatness = std::min(kFlatness, kShapeShare * bounds(surface.points).diagonal());
+Filling fill_within(const TriMesh& surface, Filler& filler, int max_tets, OctreeOptions& cubes,
+                    const Monitor& monitor) {
+  const double wanted = std::min(kFlatness, kShapeShare * bounds(surface.points).diagonal());
+  double flatness = wanted;
   for (int attempt = 0; attempt < kSizeTries; ++attempt) {
     monitor.check_cancelled();
-    cubes = cubes_for(surface, flatness);
-    Filling made = fill(surface, tree, cubes);
-    const double filled = static_cast<double>(made.grid.tets.size()) / max_tets;
-    if (filled > 0.0 && filled <= 1.0) return made;
+    cubes = cubes_for(surface, std::min(wanted, flatness), flatness);
+    auto [filled, made] = filler.fill(cubes, max_tets);
+    if (filled > 0.0 && filled <= 1.0) return std::move(*made);
     // half the way that a smooth surface would need: cubes change by factors of two
     flatness *= filled > 0.0 ? std::max(kCoarser, std::sqrt(filled)) : 0.5;
   }
@@ -193,20 +218,22 @@ MeshingResult mesh_solid(const TriMesh& surface, const MeshingOptions& options,
   const int max_tets = options.max_tets.value_or(kMostTets);
   const int max_finer = options.max_tets.value_or(kMostFinerTets);
   OctreeOptions cubes;
+  Filler filler(surface, tree);
   Filling filling =
-      fill_within(surface, tree, max_tets, cubes, part_of(monitor, "lattice", 0.0, 0.4));
+      fill_within(surface, filler, max_tets, cubes, part_of(monitor, "lattice", 0.0, 0.4));
   std::vector<Miss> missed;
   MeshingResult best = improved(std::move(filling.grid), guide, surface, options, missed,
                                 part_of(monitor, "improve", 0.4, 0.7));
   for (int round = 0; round < kFinerRounds && update_fine_places(missed, filling.octree, cubes);
        ++round) {
-    filling = fill(surface, tree, cubes);
+    auto [filled, made] = filler.fill(cubes, max_finer);
     // room for finer cubes is made where the surface is met well
-    for (int k = 0; k < kCoarserTries && std::ssize(filling.grid.tets) > max_finer; ++k) {
+    for (int k = 0; k < kCoarserTries && filled > 1.0; ++k) {
       cubes.flatness *= kCoarser;
-      filling = fill(surface, tree, cubes);
+      std::tie(filled, made) = filler.fill(cubes, max_finer);
     }
-    if (std::ssize(filling.grid.tets) > max_finer) break;
+    if (filled > 1.0) break;
+    filling = std::move(*made);
     MeshingResult finer =
         improved(std::move(filling.grid), guide, surface, options, missed,
                  part_of(monitor, "refine", 0.7 + 0.1 * round, 0.8 + 0.1 * round));

@@ -262,6 +262,15 @@ bool has_sheet_tags(const TetMesh& mesh) {
          mesh.facet_tags.end();
 }
 
+/// Tells the bone side: of a sheet the nearer face, of any other body what lies on the bone.
+void tag_for_bone(TetMesh& mesh, const TriMesh& bone, const std::string& prefix, Record& record) {
+  if (has_sheet_tags(mesh)) {
+    meshing::update_bone_side(mesh, bone);
+  } else if (!(meshing::tag_bone_side(mesh, bone) > 0.0)) {
+    record.warnings.push_back(prefix + "no part of the body lies on the bone");
+  }
+}
+
 }  // namespace
 
 Record run_mesh_file(const MeshRequest& request, const fs::path& out, const Monitor& monitor) {
@@ -274,11 +283,11 @@ Record run_mesh_file(const MeshRequest& request, const fs::path& out, const Moni
   const auto body = [&](const fs::path& partial, Record& record) {
     const TriMesh surface =
         usable_surface(io::read_surface(request.surface), name, record, monitor);
-    const bool any = request.bone.empty() && !request.options.layers;
+    const bool any = !request.options.layers;  // faces can be told by the bone
     meshing::MeshingResult result =
         filled(surface, request.options, any ? Faces::any : Faces::needed, name, record, monitor);
-    if (!request.bone.empty() && has_sheet_tags(result.mesh))
-      meshing::update_bone_side(result.mesh, io::read_surface(request.bone));
+    if (!request.bone.empty())
+      tag_for_bone(result.mesh, io::read_surface(request.bone), "", record);
     add_figures(result, "", record);
     io::write_tets(partial / out.filename(), result.mesh);
   };
@@ -302,8 +311,7 @@ Record run_mesh_stage(const fs::path& segment_folder, const meshing::MeshingOpti
           usable_surface(surfaces.at(cartilage).mesh, cartilage, record, monitor);
       meshing::MeshingResult result = filled(surface, options, Faces::needed, cartilage, record,
                                              part_of(monitor, "mesh", done, done + 0.5));
-      if (has_sheet_tags(result.mesh))
-        meshing::update_bone_side(result.mesh, surfaces.at(bone).mesh);
+      tag_for_bone(result.mesh, surfaces.at(bone).mesh, std::string(cartilage) + ": ", record);
       add_figures(result, std::string(cartilage) + "_", record);
       io::write_tets(partial / (std::string(cartilage) + ".vtu"), result.mesh);
       done += 0.5;

@@ -25,4 +25,13 @@ FaceDistances update_bone_side(TetMesh& mesh, const TriMesh& bone);
 /// The same from the curvature of the sheet: the concave face is the one with less area.
 void update_bone_side(TetMesh& mesh, BoneFace face);
 
+/// Tags what of a mesh without tagged facets, as from a lattice, lies on a bone: facets within 1 mm
+/// of it that look at it are bone side. Where these are a quarter of the boundary or more, the body
+/// is a layer on the bone: facets that look away from the bone are its articular side, those
+/// between its rim. Otherwise the rest stays untagged.
+///
+/// @returns area of the bone side, mm²; 0 where the body does not lie on the bone
+/// @throws Error bad_input if the bone has no triangle
+double tag_bone_side(TetMesh& mesh, const TriMesh& bone);
+
 }  // namespace coxa::meshing
