@@ -22,6 +22,11 @@ double von_mises_stress(const Mat3& cauchy_stress) {
   return std::sqrt(1.5) * deviator.norm();
 }
 
+double effective_strain(const Mat3& F) {
+  const Mat3 E = 0.5 * (F.transpose() * F - Mat3::Identity());
+  return std::sqrt(2.0 / 3.0) * (E - E.trace() / 3.0 * Mat3::Identity()).norm();
+}
+
 ElementFields compute_fields(const ElasticForce& force, const VecX& x) {
   const Index n = force.n_elements();
   const auto size = static_cast<std::size_t>(n);

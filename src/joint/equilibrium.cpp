@@ -130,7 +130,7 @@ std::string Equilibrium::touch(HipState& state, const Vec3& direction) const {
   const auto t = 3 * system_.translation();
   double way = kInfinity;
   bool touching = false;
-  state.contact.for_each_constraint([&](const auto& contact, const auto& constraint) {
+  state.contact.for_each_firm_constraint([&](const auto& contact, const auto& constraint) {
     const double closing =
         -translation_slope(contact, constraint, system_.translation()).dot(direction);
     const double gap = contact.gap(constraint, state.x);
@@ -158,7 +158,7 @@ std::string Equilibrium::seat(HipState& state, const Vec3& force) const {
     // translation alone against the springs that the pairs make
     Vec3 pull = force;
     Mat3 stiffness = Mat3::Zero();
-    state.contact.for_each_constraint([&](const auto& contact, const auto& constraint) {
+    state.contact.for_each_firm_constraint([&](const auto& contact, const auto& constraint) {
       const double p = contact.pressure(constraint, state.x);
       if (p == 0.0) return;
       const Vec3 slope = translation_slope(contact, constraint, system_.translation());
@@ -196,14 +196,18 @@ std::string Equilibrium::seat(HipState& state, const Vec3& force) const {
   return reason;
 }
 
-/// Largest net force that the residual leaves on one of the two cartilages, N: the bones' reactions
+/// Largest net force that the residual leaves on a cartilage or the labrum, N: the bones' reactions
 /// differ from the contact force by as much.
 double Equilibrium::net_force(const VecX& residual) const {
-  Vec3 socket = Vec3::Zero(), head = Vec3::Zero();
+  Vec3 socket = Vec3::Zero(), head = Vec3::Zero(), labrum = Vec3::Zero();
   for (Index i = 0; i < system_.translation(); ++i) {
     (i < system_.n_acetabular() ? socket : head) += residual.segment<3>(3 * i);
   }
-  return std::max(socket.norm(), head.norm());
+  if (const auto& body = system_.labrum()) {
+    for (Index i = 0; i < body->n_nodes(); ++i)
+      labrum += residual.segment<3>(3 * (body->first() + i));
+  }
+  return std::max({socket.norm(), head.norm(), labrum.norm()});
 }
 
 Settling Equilibrium::judge(const HipState& state, const Vec3& force, const Limits& limits) {

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <functional>
 
+#include "labrum_figures.h"
+
 namespace coxa::joint {
 namespace {
 
@@ -169,7 +171,7 @@ void fill_sectors(std::array<SectorFigures, N>& sectors, const SocketElements& e
 
 /// Looks for the element of a cartilage that has lost most of its volume.
 void find_crushed(CrushFigures& crush, const TetMesh& mesh, const fem::ElasticForce& elasticity,
-                  const VecX& x, bool femoral) {
+                  const VecX& x, const char* body) {
   VecX ratio(elasticity.n_elements());
   parallel_for(elasticity.n_elements(),
                [&](Index e) { ratio[e] = elasticity.deformation_gradient(x, e).determinant(); });
@@ -177,7 +179,7 @@ void find_crushed(CrushFigures& crush, const TetMesh& mesh, const fem::ElasticFo
   const double least = ratio.minCoeff(&worst);
   if (!(least < crush.least_volume_ratio)) return;
   const Points corners = mesh.points(mesh.tets.row(worst), Eigen::all);
-  crush = {least, corners.colwise().mean().transpose(), femoral};
+  crush = {least, corners.colwise().mean().transpose(), body};
 }
 
 }  // namespace
@@ -197,6 +199,9 @@ Reactions bone_reactions(const HipSystem& system, const VecX& force) {
   Reactions reactions;
   for (const Index i : system.socket_nodes()) reactions.socket += force.segment<3>(3 * i);
   for (const Index i : system.femur_nodes()) reactions.femur += force.segment<3>(3 * i);
+  if (const auto& labrum = system.labrum()) {
+    for (const Index i : labrum->held()) reactions.labrum += force.segment<3>(3 * i);
+  }
   return reactions;
 }
 
@@ -215,10 +220,12 @@ std::vector<collide::ContactSample> update_contact_figures(
   const Reactions reactions = bone_reactions(system, equilibrium.node_forces(state));
   balance.socket_reaction = reactions.socket;
   balance.femur_reaction = reactions.femur;
+  balance.labrum_reaction = reactions.labrum;
   balance.elastic_energy = equilibrium.elastic_energy(state);
   balance.contact_force = state.contact.force(state.x);
   balance.force_on_bone = state.contact.force_on_bone(state.x);
   balance.force_of_femur = state.contact.force_of_femur(state.x);
+  balance.force_on_labrum = state.contact.force_on_labrum(state.x);
   if (system.ligaments()) {
     balance.ligament_force = system.ligaments()->pull(state.x);
     frame.ligament_tension = system.ligaments()->tensions(state.x);
@@ -229,14 +236,15 @@ std::vector<collide::ContactSample> update_contact_figures(
     balance.contact_energy += 0.5 * contact.stiffness(constraint) * constraint.area * gap * gap;
   });
   if (const double size = balance.contact_force.norm(); size > 0.0) {
-    const Vec3 left =
-        reactions.socket + balance.force_on_bone + reactions.femur - balance.force_of_femur;
+    const Vec3 left = reactions.socket + balance.force_on_bone + reactions.labrum +
+                      reactions.femur - balance.force_of_femur;
     balance.reaction_error = left.norm() / size;
   }
   if (balance.applied_force.allFinite()) {
     const Vec3 left = balance.contact_force - balance.applied_force - balance.ligament_force;
     balance.force_error = left.norm() / balance.applied_force.norm();
   }
+  if (system.labrum()) update_labrum_figures(frame, model, *system.labrum(), state);
   return samples;
 }
 
@@ -246,8 +254,14 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
   const std::vector<collide::ContactSample> samples =
       update_contact_figures(frame, model, system, equilibrium, state, elements.clock);
   frame.contact.peak_pressure_patch = patch_peak(samples, kPatchArea);
-  find_crushed(frame.crush, model.acetabular_cartilage, system.socket_elasticity(), state.x, false);
-  find_crushed(frame.crush, model.femoral_cartilage, system.femur_elasticity(), state.x, true);
+  find_crushed(frame.crush, model.acetabular_cartilage, system.socket_elasticity(), state.x,
+               "acetabular cartilage");
+  find_crushed(frame.crush, model.femoral_cartilage, system.femur_elasticity(), state.x,
+               "femoral cartilage");
+  if (const auto& labrum = system.labrum()) {
+    find_crushed(frame.crush, model.labrum_body, labrum->elasticity().by_element(), state.x,
+                 "labrum");
+  }
 
   const ElementStrains strains = element_strains(system.socket_elasticity(), state.x);
   VecX hours(static_cast<Eigen::Index>(samples.size()));

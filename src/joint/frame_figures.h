@@ -45,7 +45,7 @@ double patch_peak(const std::vector<collide::ContactSample>& samples, double are
 /// Forces on the held bone-side nodes, elastic and of contact right on them, summed: socket and
 /// femur, N.
 struct Reactions {
-  Vec3 socket = Vec3::Zero(), femur = Vec3::Zero();
+  Vec3 socket = Vec3::Zero(), femur = Vec3::Zero(), labrum = Vec3::Zero();
 };
 Reactions bone_reactions(const HipSystem& system, const VecX& node_forces);
 

@@ -62,13 +62,19 @@ double HipContact::penetration(const VecX& x) const {
 }
 
 Vec3 HipContact::force(const VecX& x) const {
-  return force_on_cartilage(x) + force_on_bone(x) + force_of_femur(x);
+  return force_on_cartilage(x) + force_on_bone(x) + force_of_femur(x) + force_on_labrum(x);
 }
 
 Vec3 HipContact::force_on_cartilage(const VecX& x) const { return force_on_slave(cartilages_, x); }
 
 Vec3 HipContact::force_on_bone(const VecX& x) const {
   return bone_ ? Vec3(-force_on_slave(*bone_, x)) : Vec3(Vec3::Zero());
+}
+
+Vec3 HipContact::force_on_labrum(const VecX& x) const {
+  Vec3 sum = Vec3::Zero();
+  for (const collide::SurfaceContact& contact : labrum_) sum += force_on_slave(contact, x);
+  return sum;
 }
 
 Vec3 HipContact::force_of_femur(const VecX& x) const {

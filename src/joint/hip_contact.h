@@ -3,19 +3,25 @@
 #include <coxa/collide/surface_contact.h>
 
 #include <optional>
+#include <vector>
 
 namespace coxa::joint {
 
-/// Everything that touches in the hip: the articular surfaces each other, and each the other side's
-/// bone where no cartilage covers it.
+/// Everything that touches in the hip: the articular surfaces each other, each the other side's
+/// bone where no cartilage covers it, and the femur the labrum.
 class HipContact {
  public:
   /// @param cartilages  slave the acetabular articular side
   /// @param bone        slave the femoral articular side, obstacle the hip bone; nullopt: no bone
   /// @param femur       slave the acetabular articular side, other the femur; nullopt: none
+  /// @param labrum      slaves the soft labrum, others what of the femur it touches
   HipContact(collide::SurfaceContact cartilages, std::optional<collide::SurfaceContact> bone,
-             std::optional<collide::SurfaceContact> femur)
-      : cartilages_(std::move(cartilages)), bone_(std::move(bone)), femur_(std::move(femur)) {}
+             std::optional<collide::SurfaceContact> femur,
+             std::vector<collide::SurfaceContact> labrum)
+      : cartilages_(std::move(cartilages)),
+        bone_(std::move(bone)),
+        femur_(std::move(femur)),
+        labrum_(std::move(labrum)) {}
 
   const collide::SurfaceContact& cartilages() const { return cartilages_; }
   const std::optional<collide::SurfaceContact>& bone() const { return bone_; }
@@ -33,11 +39,13 @@ class HipContact {
 
   /// Largest overlap as enforced, mm.
   double penetration(const VecX& x) const;
-  /// Force of the femur on the socket, N: on its cartilage, on its bare bone, and by bare femur.
+  /// Force of the femur on the socket, N: on its cartilage, on its bare bone, by bare femur, and on
+  /// the labrum.
   Vec3 force(const VecX& x) const;
   Vec3 force_on_cartilage(const VecX& x) const;
   Vec3 force_on_bone(const VecX& x) const;
   Vec3 force_of_femur(const VecX& x) const;
+  Vec3 force_on_labrum(const VecX& x) const;
 
   /// Calls visit(contact, constraint) for every constraint, in a fixed order.
   template <class Visit>
@@ -46,17 +54,35 @@ class HipContact {
       for (const auto& constraint : contact.constraints()) visit(contact, constraint);
     });
   }
+  /// Likewise for those that seat the head: all but the labrum's, which gives way.
+  template <class Visit>
+  void for_each_firm_constraint(const Visit& visit) const {
+    for_each_firm(*this, [&](const collide::SurfaceContact& contact) {
+      for (const auto& constraint : contact.constraints()) visit(contact, constraint);
+    });
+  }
+  /// Calls visit(contact) for the contacts of the labrum.
+  template <class Visit>
+  void for_each_labrum(const Visit& visit) const {
+    for (const collide::SurfaceContact& contact : labrum_) visit(contact);
+  }
 
  private:
   template <class Self, class Visit>
-  static void for_each(Self& self, const Visit& visit) {
+  static void for_each_firm(Self& self, const Visit& visit) {
     visit(self.cartilages_);
     if (self.bone_) visit(*self.bone_);
     if (self.femur_) visit(*self.femur_);
   }
+  template <class Self, class Visit>
+  static void for_each(Self& self, const Visit& visit) {
+    for_each_firm(self, visit);
+    for (auto& contact : self.labrum_) visit(contact);
+  }
 
   collide::SurfaceContact cartilages_;
   std::optional<collide::SurfaceContact> bone_, femur_;
+  std::vector<collide::SurfaceContact> labrum_;
 };
 
 }  // namespace coxa::joint

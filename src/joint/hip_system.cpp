@@ -2,6 +2,7 @@
 
 #include <coxa/geom/fits.h>
 #include <coxa/mesh/measures.h>
+#include <coxa/mesh/tet_quality.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -16,6 +17,8 @@ constexpr double kSearchDistance = 4.0;
 constexpr double kBoneSearch = 1.5;
 // bare femur farther out than the socket's cartilage by more than this is never reached, mm
 constexpr double kFemurReach = 10.0;
+// a labrum made apart from the head may overlap it by so much at first, mm
+constexpr double kLabrumSearch = 3.0;
 // all only where they face each other: not at all beyond about 80 degrees, fully within 60
 constexpr double kFacing = 0.2, kFacingFully = 0.5;
 
@@ -41,13 +44,8 @@ std::vector<Index> nodes_of(const Triangles& facets, Index first) {
 
 /// Volume over articular area, mm.
 double mean_thickness(const TetMesh& mesh) {
-  double volume = 0.0;
-  for (Index t = 0; t < mesh.n_tets(); ++t) {
-    const Vec3 a = mesh.points.row(mesh.tets(t, 0)), b = mesh.points.row(mesh.tets(t, 1)),
-               c = mesh.points.row(mesh.tets(t, 2)), d = mesh.points.row(mesh.tets(t, 3));
-    volume += (b - a).cross(c - a).dot(d - a) / 6.0;
-  }
-  return volume / area({mesh.points, facets_with(mesh, FacetTag::articular_side)});
+  return tet_volumes(mesh.points, mesh.tets).sum() /
+         area({mesh.points, facets_with(mesh, FacetTag::articular_side)});
 }
 
 /// Largest distance of a node of the facets from a point, mm.
@@ -107,8 +105,10 @@ HipSystem::HipSystem(const JointModel& model)
   const double confined_modulus = E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
   foundation_stiffness_ = confined_modulus / (mean_thickness(model.acetabular_cartilage) +
                                               mean_thickness(model.femoral_cartilage));
-  if (model.bare_bone == BareBone::both) add_bare_femur();
+  const bool has_labrum = model.labrum_body.n_tets() > 0;
+  if (model.bare_bone == BareBone::both || (has_labrum && !model.femur.empty())) add_bare_femur();
   if (!model.ligaments.empty()) add_ligaments();
+  if (has_labrum) labrum_.emplace(model, first_labrum_node());
 }
 
 void HipSystem::add_bare_femur() {
@@ -148,6 +148,9 @@ VecX HipSystem::reference() const {
   for (Index i = 0; i < static_cast<Index>(femur_points_.rows()); ++i) {
     x.segment<3>(3 * (first_femur_point() + i)) = femur_points_.row(i).transpose();
   }
+  for (Index i = 0; labrum_ && i < labrum_->n_nodes(); ++i) {
+    x.segment<3>(3 * (labrum_->first() + i)) = model_.labrum_body.points.row(i).transpose();
+  }
   return x;
 }
 
@@ -170,7 +173,7 @@ void HipSystem::update_pose(VecX& x, const BonePose& from, const BonePose& to) c
 
 HipContact HipSystem::make_contact(double stiffness, double reach) const {
   return {make_cartilage_contact(stiffness), make_bone_contact(stiffness, reach),
-          make_femur_contact(stiffness)};
+          make_femur_contact(stiffness), make_labrum_contacts(stiffness)};
 }
 
 collide::SurfaceContact HipSystem::make_cartilage_contact(double stiffness) const {
@@ -199,7 +202,7 @@ std::optional<collide::SurfaceContact> HipSystem::make_bone_contact(double stiff
 }
 
 std::optional<collide::SurfaceContact> HipSystem::make_femur_contact(double stiffness) const {
-  if (bare_femur_.rows() == 0) return std::nullopt;
+  if (model_.bare_bone != BareBone::both || bare_femur_.rows() == 0) return std::nullopt;
   const Triangles socket = facets_with(model_.acetabular_cartilage, FacetTag::articular_side);
   collide::SurfaceContact contact(collide::make_particle_surface(socket),
                                   carried(bare_femur_, first_femur_point(), translation()),
@@ -208,18 +211,35 @@ std::optional<collide::SurfaceContact> HipSystem::make_femur_contact(double stif
   return contact;
 }
 
+std::vector<collide::SurfaceContact> HipSystem::make_labrum_contacts(double stiffness) const {
+  std::vector<collide::SurfaceContact> contacts;
+  if (!labrum_) return contacts;
+  const auto add = [&](collide::ParticleSurface other) {
+    contacts.emplace_back(collide::make_particle_surface(labrum_->surface()), std::move(other),
+                          contact_options(stiffness, kLabrumSearch));
+  };
+  const Triangles femoral = facets_with(model_.femoral_cartilage, FacetTag::articular_side);
+  add(carried(femoral, n_acetabular_, translation()));
+  if (bare_femur_.rows() > 0) add(carried(bare_femur_, first_femur_point(), translation()));
+  return contacts;
+}
+
 std::vector<const dynamics::Force*> HipSystem::elastic() const {
   std::vector<const dynamics::Force*> forces{&socket_elasticity_.by_element(),
                                              &femur_elasticity_.by_element()};
+  if (labrum_) forces.push_back(&labrum_->elasticity().by_element());
   if (ligaments_) forces.push_back(&*ligaments_);
   return forces;
 }
 
 std::vector<const fem::MeanDilatation*> HipSystem::patches() const {
   std::vector<const fem::MeanDilatation*> patches;
-  for (const CartilageElasticity* body : {&socket_elasticity_, &femur_elasticity_}) {
-    if (body->by_patch() != nullptr) patches.push_back(body->by_patch());
-  }
+  const auto add = [&](const CartilageElasticity& body) {
+    if (body.by_patch() != nullptr) patches.push_back(body.by_patch());
+  };
+  add(socket_elasticity_);
+  add(femur_elasticity_);
+  if (labrum_) add(labrum_->elasticity());
   return patches;
 }
 
@@ -227,6 +247,7 @@ VecX HipSystem::elastic_force(const VecX& x, double& energy) const {
   VecX force = VecX::Zero(x.size());
   energy = socket_elasticity_.add_force_with_energy(x, force);
   energy += femur_elasticity_.add_force_with_energy(x, force);
+  if (labrum_) energy += labrum_->elasticity().add_force_with_energy(x, force);
   if (ligaments_) {
     ligaments_->add_force(x, VecX(), force);
     energy += ligaments_->energy(x);
@@ -238,7 +259,10 @@ std::vector<bool> HipSystem::free_particles(LoadMode mode) const {
   std::vector<bool> free(static_cast<std::size_t>(n_particles()), true);
   for (const Index i : socket_nodes_) free[static_cast<std::size_t>(i)] = false;
   for (const Index i : femur_nodes_) free[static_cast<std::size_t>(i)] = false;
-  std::fill(free.begin() + first_femur_point(), free.end(), false);
+  std::fill(free.begin() + first_femur_point(), free.begin() + first_labrum_node(), false);
+  if (labrum_) {
+    for (const Index i : labrum_->held()) free[static_cast<std::size_t>(i)] = false;
+  }
   if (mode == LoadMode::prescribed_pose) free[static_cast<std::size_t>(translation())] = false;
   return free;
 }

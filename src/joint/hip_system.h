@@ -8,6 +8,7 @@
 
 #include "elasticity.h"
 #include "hip_contact.h"
+#include "labrum_body.h"
 #include "ligament_force.h"
 
 namespace coxa::joint {
@@ -28,8 +29,8 @@ BonePose between(const BonePose& a, const BonePose& b, double s);
 /// Femoral nodes are stored without t (elasticity does not feel it); their true position is y + t.
 /// So t is felt by contact, through its weight 1 in every femoral surface vertex, and by ligaments.
 /// After t come points of the rigid femur where they are needed, stored like femoral nodes and
-/// held: vertices of its surface that the socket's cartilage may touch, the ligaments' insertions,
-/// the joint centre.
+/// held: vertices of its surface that the socket's cartilage or the labrum may touch, the
+/// ligaments' insertions, the joint centre. Last come the nodes of the soft labrum.
 class HipSystem {
  public:
   /// @note keeps a reference to the model, which must outlive it
@@ -38,7 +39,7 @@ class HipSystem {
   Index n_acetabular() const { return n_acetabular_; }
   Index n_femoral() const { return n_femoral_; }
   Index translation() const { return n_acetabular_ + n_femoral_; }  ///< its particle
-  Index n_particles() const { return translation() + 1 + static_cast<Index>(femur_points_.rows()); }
+  Index n_particles() const { return first_labrum_node() + (labrum_ ? labrum_->n_nodes() : 0); }
   const Vec3& centre() const { return centre_; }
 
   VecX reference() const;  ///< positions in the image pose, t = 0
@@ -47,7 +48,7 @@ class HipSystem {
 
   /// @param reach  how far the head may move, mm: bone farther than that is left out
   HipContact make_contact(double stiffness, double reach) const;
-  /// Forces of cartilages and ligaments, without what resists volume change by patches,
+  /// Forces of cartilages, labrum and ligaments, without what resists volume change by patches,
   std::vector<const dynamics::Force*> elastic() const;
   /// and that.
   std::vector<const fem::MeanDilatation*> patches() const;
@@ -56,6 +57,7 @@ class HipSystem {
   const fem::ElasticForce& socket_elasticity() const { return socket_elasticity_.by_element(); }
   const fem::ElasticForce& femur_elasticity() const { return femur_elasticity_.by_element(); }
   const std::optional<LigamentForce>& ligaments() const { return ligaments_; }
+  const std::optional<LabrumBody>& labrum() const { return labrum_; }
   /// Particles that may move; t only when it is free.
   std::vector<bool> free_particles(LoadMode mode) const;
   /// Held nodes of the acetabular and of the femoral bone side.
@@ -70,9 +72,13 @@ class HipSystem {
   collide::SurfaceContact make_cartilage_contact(double stiffness) const;
   std::optional<collide::SurfaceContact> make_bone_contact(double stiffness, double reach) const;
   std::optional<collide::SurfaceContact> make_femur_contact(double stiffness) const;
+  std::vector<collide::SurfaceContact> make_labrum_contacts(double stiffness) const;
   void add_bare_femur();
   void add_ligaments();
   Index first_femur_point() const { return translation() + 1; }
+  Index first_labrum_node() const {
+    return first_femur_point() + static_cast<Index>(femur_points_.rows());
+  }
 
   const JointModel& model_;
   Index n_acetabular_, n_femoral_;
@@ -82,6 +88,7 @@ class HipSystem {
   Points femur_points_ = Points(0, 3);  // in the image pose
   Triangles bare_femur_;                // of femur points
   std::optional<LigamentForce> ligaments_;
+  std::optional<LabrumBody> labrum_;
   double foundation_stiffness_ = 0.0;
 };
 

@@ -9,6 +9,8 @@
 #include <cctype>
 #include <set>
 
+#include "labrum_body.h"
+
 namespace coxa::joint {
 namespace {
 
@@ -72,18 +74,35 @@ void check_ligaments(const JointModel& model) {
   }
 }
 
-}  // namespace
-
-void check_model(const JointModel& model) {
-  check_cartilage(model.acetabular_cartilage, "acetabular cartilage");
-  check_cartilage(model.femoral_cartilage, "femoral cartilage");
-  const CartilageMaterial& material = model.material;
+void check_material(const CartilageMaterial& material) {
   require(material.youngs_modulus > 0.0, "Young's modulus must be positive, got ",
           material.youngs_modulus, " MPa");
   const bool by_patches = material.volume_change == VolumeChange::by_patches;
   const double least_ratio = by_patches ? 0.0 : -1.0;
   require(least_ratio < material.poissons_ratio && material.poissons_ratio < 0.5,
           "Poisson's ratio must be in (", least_ratio, ", 0.5), got ", material.poissons_ratio);
+}
+
+void check_labrum(const JointModel& model) {
+  const TetMesh& mesh = model.labrum_body;
+  if (mesh.n_tets() == 0) return;
+  check_material(model.labrum_material);
+  if (mesh.mid_nodes.rows() != 0)
+    fail(ErrorCode::bad_mesh, "the labrum has ten-node elements; the joint takes four-node ones");
+  if (mesh.facets.rows() == 0) fail(ErrorCode::bad_mesh, "the labrum has no boundary facets");
+  const std::size_t held = labrum_seat(model).size();
+  if (held < 3) {
+    fail(ErrorCode::bad_mesh, "nothing holds the labrum: ", held,
+         " nodes are on facets tagged bone_side or lie on the hip bone");
+  }
+}
+
+}  // namespace
+
+void check_model(const JointModel& model) {
+  check_cartilage(model.acetabular_cartilage, "acetabular cartilage");
+  check_cartilage(model.femoral_cartilage, "femoral cartilage");
+  check_material(model.material);
   const double apart = (model.X_IP.p - model.X_IF.p).norm();
   require(apart <= kCentreSlack,
           "pelvis and femur frames must both have their origin at the joint ",
@@ -104,6 +123,7 @@ void check_model(const JointModel& model) {
   require(model.bare_bone == BareBone::hip_bone || !model.femur.empty(),
           "acetabular cartilage on bare femur needs both bone surfaces");
   check_ligaments(model);
+  check_labrum(model);
   if (!model.femur.empty()) {
     require_closed_manifold(model.hip_bone, "hip_bone");
     require_closed_manifold(model.femur, "femur");

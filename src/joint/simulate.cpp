@@ -52,8 +52,7 @@ FrameResult without_result(const FrameResult& frame) {
   FrameResult failed;
   failed.frame = frame.frame;
   failed.status = FrameStatus::failed;
-  failed.reason = join_text("an element of the ", frame.crush.femoral ? "femoral" : "acetabular",
-                            " cartilage near ", frame.crush.place.transpose(),
+  failed.reason = join_text("an element of the ", frame.crush.body, " near ", frame.crush.place.transpose(),
                             " is turned inside out: volume ratio ", frame.crush.least_volume_ratio);
   failed.angles = frame.angles;
   failed.X_II = frame.X_II;
@@ -216,6 +215,7 @@ JointResult Simulation::run() {
   result_.load_description = load_.description;
   result_.bare_bone = model_.bare_bone;
   result_.has_labrum = !model_.labrum.empty();
+  result_.has_labrum_body = model_.labrum_body.n_tets() > 0;
   for (const Ligament& ligament : model_.ligaments) result_.ligaments.push_back(ligament.name);
   if (load_.mode == LoadMode::force) unseated_ = march_.equilibrium().seat(state_, force(0));
 

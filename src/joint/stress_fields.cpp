@@ -57,4 +57,11 @@ StressFields femoral_fields(const JointModel& model, const FrameResult& frame) {
                    model.material);
 }
 
+StressFields labrum_fields(const JointModel& model, const FrameResult& frame) {
+  const TetMesh& mesh = model.labrum_body;
+  require(mesh.n_tets() > 0, "the model has no soft labrum");
+  check_displacement(mesh, frame.labrum_displacement);
+  return fields_of(mesh, mesh.points + frame.labrum_displacement, model.labrum_material);
+}
+
 }  // namespace coxa::joint

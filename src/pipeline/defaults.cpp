@@ -24,7 +24,9 @@ Fields joint_defaults() {
           {"poisson", joint.poisson_ratio},
           {"law", joint.law},
           {"volume_change", joint.volume_change},
-          {"bare_bone", joint.bare_bone}};
+          {"bare_bone", joint.bare_bone},
+          {"labrum_young_mpa", joint.labrum_modulus},
+          {"labrum_poisson", joint.labrum_poisson_ratio}};
 }
 
 Fields segment_defaults() {

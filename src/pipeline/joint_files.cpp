@@ -51,6 +51,14 @@ void write_frame(const fs::path& folder, const joint::JointModel& model,
   mesh = model.femoral_cartilage;
   mesh.points = transformed(mesh.points, frame.X_II) + frame.femoral_displacement;
   io::write_tets(folder / numbered("femoral", frame.frame), mesh, femoral);
+  if (frame.labrum_displacement.rows() == 0) return;
+
+  io::TetFields labrum = element_fields(joint::labrum_fields(model, frame));
+  labrum.at_points["displacement_mm"] = frame.labrum_displacement;
+  labrum.at_points["contact_pressure_MPa"] = frame.labrum_pressure;
+  mesh = model.labrum_body;
+  mesh.points += frame.labrum_displacement;
+  io::write_tets(folder / numbered("labrum", frame.frame), mesh, labrum);
 }
 
 /// A comma and the number; an empty cell where it is not one.
@@ -61,15 +69,19 @@ std::string cell(double value) {
   return text;
 }
 
-/// What only some models have: bare femur in contact, ligaments.
+/// What only some models have: labrum, bare femur in contact, ligaments.
 std::size_t n_optional_cells(const joint::JointResult& result) {
-  return (result.has_labrum ? 1 : 0) + (result.bare_bone == joint::BareBone::both ? 1 : 0) +
-         result.ligaments.size();
+  return (result.has_labrum ? 1 : 0) + (result.has_labrum_body ? 5 : 0) +
+         (result.bare_bone == joint::BareBone::both ? 1 : 0) + result.ligaments.size();
 }
 
 std::string optional_cells(const joint::FrameResult& f, const joint::JointResult& result) {
   std::string text;
   if (result.has_labrum) text += cell(f.labrum_clearance);
+  if (result.has_labrum_body) {
+    text += cell(f.balance.force_on_labrum.norm()) + cell(f.labrum.peak_pressure_p99) +
+            cell(f.labrum.contact_area) + cell(f.labrum.strain) + cell(f.labrum.peak_strain_p99);
+  }
   if (result.bare_bone == joint::BareBone::both) text += cell(f.balance.force_of_femur.norm());
   for (const double tension : f.ligament_tension) text += cell(tension);
   return text;
@@ -90,6 +102,11 @@ std::string header(const joint::JointResult& result) {
   for (int h = 0; h < 12; ++h) text += join_text(",strain_", h == 0 ? 12 : h, "_oclock");
   for (const char* region : joint::kRegionNames) text += join_text(",strain_", region);
   if (result.has_labrum) text += ",labrum_clearance_mm";
+  if (result.has_labrum_body) {
+    text +=
+        ",force_on_labrum_N,labrum_pressure_p99_MPa,labrum_contact_area_mm2,labrum_strain,"
+        "labrum_strain_p99";
+  }
   if (result.bare_bone == joint::BareBone::both) text += ",force_of_bare_femur_N";
   for (const std::string& ligament : result.ligaments) text += ",tension_" + ligament + "_N";
   return text + ",residual,iterations,seconds,reason\n";
@@ -133,6 +150,10 @@ void write_frames(const fs::path& folder, const joint::JointModel& model,
     for (const char* part : {"acetabular", "femoral"}) {
       entries.push_back({time, std::string(part) + "_cartilage",
                          fs::path("frames") / numbered(part, frame.frame)});
+    }
+    if (result.has_labrum_body) {
+      entries.push_back(
+          {time, "acetabular_labrum", fs::path("frames") / numbered("labrum", frame.frame)});
     }
   }
   io::write_collection(folder / "results.pvd", entries);

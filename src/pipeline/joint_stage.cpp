@@ -68,6 +68,11 @@ Record wanted_record(const JointRequest& request) {
   if (!request.hip_bone.empty()) record.inputs["hip_bone"] = io::sha256_of_path(request.hip_bone);
   if (!request.femur.empty()) record.inputs["femur"] = io::sha256_of_path(request.femur);
   if (!request.labrum.empty()) record.inputs["labrum"] = io::sha256_of_path(request.labrum);
+  if (!request.labrum_mesh.empty()) {
+    record.inputs["labrum_mesh"] = io::sha256_of_path(request.labrum_mesh);
+    record.options["labrum_young_mpa"] = j.labrum_modulus;
+    record.options["labrum_poisson"] = j.labrum_poisson_ratio;
+  }
   return record;
 }
 
@@ -103,6 +108,7 @@ void add_figures(const joint::JointResult& result, Record& record) {
   record.figures["frames_converged"] = std::int64_t{result.n_converged()};
   record.figures["load"] = result.load_description;
   double peak = 0.0, force_error = 0.0, reaction_error = 0.0, bare = 0.0, bare_femur = 0.0;
+  double labrum_share = 0.0, labrum_peak = 0.0, labrum_strain = 0.0;
   VecX tension = VecX::Zero(static_cast<Eigen::Index>(result.ligaments.size()));
   for (const joint::FrameResult& frame : result.frames) {
     if (frame.status == joint::FrameStatus::failed) {
@@ -112,9 +118,8 @@ void add_figures(const joint::JointResult& result, Record& record) {
     if (frame.status != joint::FrameStatus::converged) continue;
     if (frame.crush.least_volume_ratio < joint::kSolidShare) {
       record.warnings.push_back(join_text(
-          "frame ", frame.frame, ": ", frame.crush.femoral ? "femoral" : "acetabular",
-          " cartilage near ", frame.crush.place.transpose(), " is squeezed to ",
-          100.0 * frame.crush.least_volume_ratio,
+          "frame ", frame.frame, ": ", frame.crush.body, " near ", frame.crush.place.transpose(),
+          " is squeezed to ", 100.0 * frame.crush.least_volume_ratio,
           " % of its volume: an edge bears the load there, and peak pressures tell of that edge"));
     }
     peak = std::max(peak, frame.contact.peak_pressure_p99);
@@ -122,6 +127,9 @@ void add_figures(const joint::JointResult& result, Record& record) {
       bare = std::max(bare, frame.balance.force_on_bone.norm() / all);
       bare_femur = std::max(bare_femur, frame.balance.force_of_femur.norm() / all);
     }
+    labrum_share = std::max(labrum_share, frame.labrum.force_share);
+    labrum_peak = std::max(labrum_peak, frame.labrum.peak_pressure_p99);
+    labrum_strain = std::max(labrum_strain, frame.labrum.peak_strain_p99);
     tension = tension.cwiseMax(frame.ligament_tension);
     force_error = std::max(force_error, frame.balance.force_error);
     reaction_error = std::max(reaction_error, frame.balance.reaction_error);
@@ -130,6 +138,11 @@ void add_figures(const joint::JointResult& result, Record& record) {
   record.figures["largest_share_on_bare_bone_percent"] = 100.0 * bare;
   if (result.bare_bone == joint::BareBone::both)
     record.figures["largest_share_of_bare_femur_percent"] = 100.0 * bare_femur;
+  if (result.has_labrum_body) {
+    record.figures["largest_share_on_labrum_percent"] = 100.0 * labrum_share;
+    record.figures["largest_labrum_pressure_p99_mpa"] = labrum_peak;
+    record.figures["largest_labrum_strain_p99"] = labrum_strain;
+  }
   for (std::size_t k = 0; k < result.ligaments.size(); ++k)
     record.figures["largest_tension_" + result.ligaments[k] + "_N"] =
         tension[static_cast<Eigen::Index>(k)];
@@ -164,6 +177,9 @@ joint::JointModel read_joint_model(const JointRequest& request, const motion::Bo
   if (!request.hip_bone.empty()) model.hip_bone = io::read_surface(request.hip_bone);
   if (!request.femur.empty()) model.femur = io::read_surface(request.femur);
   if (!request.labrum.empty()) model.labrum = io::read_surface(request.labrum);
+  if (!request.labrum_mesh.empty()) model.labrum_body = io::read_tets(request.labrum_mesh);
+  model.labrum_material.youngs_modulus = request.joint.labrum_modulus;
+  model.labrum_material.poissons_ratio = request.joint.labrum_poisson_ratio;
   model.X_IP = frames.pelvis.X_IB;
   model.X_IF = frames.femur.X_IB;
   model.material.law = request.joint.law == "corotational" ? joint::MaterialLaw::corotational
@@ -213,6 +229,8 @@ JointRequest read_joint_request(const fs::path& path) {
     request.femur = existing(root, "femur");
   }
   if (root.has("acetabular_labrum")) request.labrum = existing(root, "acetabular_labrum");
+  if (root.has("acetabular_labrum_mesh"))
+    request.labrum_mesh = existing(root, "acetabular_labrum_mesh");
   request.motion = existing(root, "motion");
   request.joint = read_joint_entry(root);
   request.body_mass = root.find<double>("body_mass_kg");
@@ -237,6 +255,8 @@ std::string to_toml(const JointRequest& request, const fs::path& folder) {
   }
   if (!request.labrum.empty())
     text += join_text("acetabular_labrum = \"", relative(request.labrum), "\"\n");
+  if (!request.labrum_mesh.empty())
+    text += join_text("acetabular_labrum_mesh = \"", relative(request.labrum_mesh), "\"\n");
   if (request.body_mass) text += join_text("body_mass_kg = ", *request.body_mass, "\n");
   text += join_text("motion = \"", relative(request.motion), "\"\n\n[joint]\nloading = \"",
                     name_of(j.loading), "\"\nforce_N = ", j.force,
@@ -247,6 +267,10 @@ std::string to_toml(const JointRequest& request, const fs::path& folder) {
   if (j.direction) {
     const Vec3& d = *j.direction;
     text += join_text("direction = [", d[0], ", ", d[1], ", ", d[2], "]\n");
+  }
+  if (!request.labrum_mesh.empty()) {
+    text += join_text("labrum_young_mpa = ", j.labrum_modulus,
+                      "\nlabrum_poisson = ", j.labrum_poisson_ratio, "\n");
   }
   if (j.bare_bone != "hip_bone") text += join_text("bare_bone = \"", j.bare_bone, "\"\n");
   for (const LigamentEntry& ligament : j.ligaments) text += to_toml(ligament);

@@ -107,7 +107,10 @@ void check_joint(const io::Table& table, const JointEntry& joint) {
           table.where("law"),
           " must be \"corotational\", \"st_venant_kirchhoff\" or \"neo_hookean\", got \"",
           joint.law, "\"");
-  require(joint.bare_bone == "hip_bone" || joint.bare_bone == "both", table.where("bare_bone"),
+  require(joint.labrum_modulus > 0.0, table.where("labrum_young_mpa"), " must be positive, got ",
+          joint.labrum_modulus);
+  require(joint.labrum_poisson_ratio > 0.0 && joint.labrum_poisson_ratio < 0.5,
+          table.where("labrum_poisson"), " must be in (0, 0.5), got ", joint.labrum_poisson_ratio);
   require(joint.volume_change == "patches" || joint.volume_change == "elements",
           table.where("volume_change"), " must be \"patches\" or \"elements\", got \"",
           joint.volume_change, "\"");
@@ -170,6 +173,9 @@ JointEntry read_joint_entry(const io::Table& root) {
   joint.bare_bone = table->value_or("bare_bone", joint.bare_bone);
   joint.volume_change = table->value_or("volume_change", joint.volume_change);
   joint.ligaments = read_ligaments(*table);
+  joint.labrum_modulus = table->value_or("labrum_young_mpa", joint.labrum_modulus);
+  joint.labrum_poisson_ratio = table->value_or("labrum_poisson", joint.labrum_poisson_ratio);
+  joint.bare_bone = table->value_or("bare_bone", joint.bare_bone);
   table->finish();
   check_joint(*table, joint);
   return joint;

@@ -23,6 +23,8 @@ ElementFields compute_fields(const ElasticForce& force, const VecX& x);
 Vec3 principal_values(const Mat3& tensor);
 /// sqrt(3/2) times the norm of the deviator, MPa.
 double von_mises_stress(const Mat3& cauchy_stress);
+/// sqrt(2/3 dev E : dev E), E Green's strain of a deformation gradient.
+double effective_strain(const Mat3& F);
 
 /// Values per element averaged to the nodes, weighted by reference volume.
 /// @param values M×k   @returns N×k; NaN at nodes of no element

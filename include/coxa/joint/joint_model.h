@@ -31,6 +31,10 @@ struct CartilageMaterial {
   VolumeChange volume_change = VolumeChange::by_patches;
 };
 
+/// Fibrocartilage as finite-element studies of the hip have taken it (docs/joint.md, Labrum).
+inline constexpr CartilageMaterial kLabrumMaterial{
+    .law = MaterialLaw::corotational, .youngs_modulus = 20.0, .poissons_ratio = 0.4};
+
 /// Bare bone that the other side's cartilage may rest on.
 enum class BareBone {
   hip_bone,  ///< the hip bone, by the femoral cartilage
@@ -44,10 +48,14 @@ struct JointModel {
   TetMesh femoral_cartilage;     ///< likewise
   TriMesh hip_bone, femur;       ///< rigid, closed; both empty: the bony limit is not looked for
   TriMesh labrum;  ///< closed, rigid with the hip bone; empty: contact with it is not looked for
+  /// Soft labrum that bears; no tetrahedra: none. Held where its facets are tagged bone_side, or
+  /// without such tags where it lies on the hip bone.
+  TetMesh labrum_body = {};
   /// ISB frames of pelvis and femur in the image pose (x anterior, y superior, z right), both with
   /// their origin at the joint centre.
   RigidTransform X_IP, X_IF;
   CartilageMaterial material;
+  CartilageMaterial labrum_material = kLabrumMaterial;
   BareBone bare_bone = BareBone::hip_bone;
   std::vector<Ligament> ligaments = {};
 };

@@ -56,7 +56,16 @@ struct ContactFigures {
 struct CrushFigures {
   double least_volume_ratio = 1.0;    ///< deformed over reference volume of the worst element
   Vec3 place = Vec3::Constant(kNaN);  ///< mm, image frame, its middle before deformation
-  bool femoral = false;               ///< whether it belongs to the femoral cartilage
+  std::string body;  ///< it belongs to: "acetabular cartilage", "femoral cartilage", "labrum"
+};
+
+/// The soft labrum in one converged frame; all 0 where there is none.
+struct LabrumFigures {
+  double force_share = 0.0;        ///< of the contact force, in [0, 1]
+  double peak_pressure_p99 = 0.0;  ///< MPa, 99th percentile by area of the nodes that press
+  double contact_area = 0.0;       ///< mm², of those nodes
+  double strain = 0.0;             ///< volume mean of the effective strain
+  double peak_strain_p99 = 0.0;    ///< its 99th percentile by volume
 };
 
 /// Balance of one converged frame.
@@ -67,12 +76,14 @@ struct BalanceFigures {
                                        ///< bare bone included
   Vec3 force_on_bone = Vec3::Zero();   ///< N, the part of it on hip bone that no cartilage covers
   Vec3 force_of_femur = Vec3::Zero();  ///< N, the part of it by femur that no cartilage covers
-  Vec3 ligament_force = Vec3::Zero();  ///< N, of the ligaments on the femur
+  Vec3 force_on_labrum = Vec3::Zero();  ///< N, the part of it on the soft labrum
+  Vec3 ligament_force = Vec3::Zero();   ///< N, of the ligaments on the femur
   Vec3 socket_reaction = Vec3::Zero();  ///< N, of the acetabular bone side onto the hip bone
   Vec3 femur_reaction = Vec3::Zero();   ///< N, of the femoral bone side onto the femur
+  Vec3 labrum_reaction = Vec3::Zero();  ///< N, of the labrum's seat onto the hip bone
   double force_error =
       0.0;  ///< |contact - applied - ligaments| / |applied|; 0 with a prescribed pose
-  double reaction_error = 0.0;  ///< |socket + bare bones + femur| / |contact force|
+  double reaction_error = 0.0;  ///< |socket + bare bones + labrum + femur| / |contact force|
   double elastic_energy = 0.0;  ///< N·mm, of cartilages and ligaments
   double contact_energy = 0.0;  ///< N·mm, left in the penalty
   double work = 0.0;  ///< N·mm, done by the femur's bone side since the first loaded state
@@ -98,9 +109,12 @@ struct FrameResult {
   VecX acetabular_pressure;        ///< MPa per node, 0 off the articular side
   VecX acetabular_gap;    ///< mm per node; NaN off the articular side and where nothing faces it
   VecX femoral_pressure;  ///< MPa per node, 0 off the articular side
+  Points labrum_displacement;  ///< mm, of the soft labrum's nodes; empty where there is none
+  VecX labrum_pressure;        ///< MPa per node
   ContactFigures contact;
   BalanceFigures balance;
   CrushFigures crush;
+  LabrumFigures labrum;
   VecX ligament_tension;                  ///< N, as the model's ligaments
   std::array<SectorFigures, 12> sectors;  ///< sector h is centred on h o'clock, 0 on twelve
   std::array<SectorFigures, 6> regions;   ///< as kRegionNames
@@ -135,7 +149,8 @@ struct JointResult {
   /// Where the femur first touches the labrum; frames beyond are solved all the same, as if it were
   /// not there.
   std::optional<BonyLimit> labrum_contact;
-  bool has_labrum = false;  ///< the model
+  bool has_labrum = false;       ///< the model, as a rigid surface
+  bool has_labrum_body = false;  ///< the model, as soft tissue
   std::optional<CentreSensitivity> sensitivity;
   std::string load_description;
   BareBone bare_bone = BareBone::hip_bone;  ///< of the model

@@ -42,5 +42,7 @@ JointResult simulate(const JointModel& model, const motion::HipMotion& motion, c
 /// Strain and stress of the acetabular and femoral elements of a converged frame.
 StressFields acetabular_fields(const JointModel& model, const FrameResult& frame);
 StressFields femoral_fields(const JointModel& model, const FrameResult& frame);
+/// Of the soft labrum's. @throws Error bad_input where the model has none
+StressFields labrum_fields(const JointModel& model, const FrameResult& frame);
 
 }  // namespace coxa::joint

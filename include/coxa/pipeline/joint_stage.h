@@ -19,7 +19,8 @@ struct JointRequest {
   std::filesystem::path motion;           ///< folder of a motion stage
   JointEntry joint;
   std::optional<double> body_mass = std::nullopt;  ///< kg, for a load in percent of body weight
-  std::filesystem::path labrum = {};  ///< surface; empty: contact with it is not looked for
+  std::filesystem::path labrum = {};       ///< surface; empty: contact with it is not looked for
+  std::filesystem::path labrum_mesh = {};  ///< VTU of the soft labrum; empty: none bears
 };
 
 /// @throws Error bad_input for a missing or unknown key, a value out of range, or a file that does

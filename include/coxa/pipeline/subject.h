@@ -2,6 +2,7 @@
 
 #include <coxa/core/types.h>
 #include <coxa/io/config.h>
+#include <coxa/joint/joint_model.h>
 
 #include <filesystem>
 #include <map>
@@ -53,6 +54,8 @@ struct JointEntry {
   std::string law = "corotational";       ///< or st_venant_kirchhoff, neo_hookean
   std::string volume_change = "patches";  ///< or elements: what resists it
   std::string bare_bone = "hip_bone";     ///< or both
+  double labrum_modulus = joint::kLabrumMaterial.youngs_modulus;  ///< MPa
+  double labrum_poisson_ratio = joint::kLabrumMaterial.poissons_ratio;
   std::vector<LigamentEntry> ligaments = {};
 };
 
