@@ -170,12 +170,11 @@ JointEntry read_joint_entry(const io::Table& root) {
   joint.youngs_modulus = table->value_or("young_mpa", joint.youngs_modulus);
   joint.poisson_ratio = table->value_or("poisson", joint.poisson_ratio);
   joint.law = table->value_or("law", joint.law);
-  joint.bare_bone = table->value_or("bare_bone", joint.bare_bone);
   joint.volume_change = table->value_or("volume_change", joint.volume_change);
-  joint.ligaments = read_ligaments(*table);
   joint.labrum_modulus = table->value_or("labrum_young_mpa", joint.labrum_modulus);
   joint.labrum_poisson_ratio = table->value_or("labrum_poisson", joint.labrum_poisson_ratio);
   joint.bare_bone = table->value_or("bare_bone", joint.bare_bone);
+  joint.ligaments = read_ligaments(*table);
   table->finish();
   check_joint(*table, joint);
   return joint;
