@@ -114,6 +114,7 @@ void check_joint(const io::Table& table, const JointEntry& joint) {
   require(joint.volume_change == "patches" || joint.volume_change == "elements",
           table.where("volume_change"), " must be \"patches\" or \"elements\", got \"",
           joint.volume_change, "\"");
+  require(joint.bare_bone == "hip_bone" || joint.bare_bone == "both", table.where("bare_bone"),
           " must be \"hip_bone\" or \"both\", got \"", joint.bare_bone, "\"");
 }
 
