@@ -2,7 +2,7 @@
 """Meshes surfaces with coxa, TetGen, Gmsh and CGAL at about equal numbers of tetrahedra, and compares them.
 
 usage: compare_meshers.py --coxa build/release/coxa [--cgal build/bench/cgal_mesher] [--shared ../shared] [--figure FILE.png]
-                          [--tries N] [--work DIR] SURFACE …
+                          [--tries N] [--without NAME;…] [--work DIR] SURFACE …
 
 TetGen and Gmsh are Debian's programs `tetgen` and `gmsh`; cgal_mesher is built from bench/ with -DCOXA_BENCHMARKS=ON where CGAL
 is installed.  A program that is not there is left out.  Each runs at the best settings found for thin cartilage, its element size
@@ -58,16 +58,29 @@ def by_coxa(arguments, _judge, surface, work, _size):
     return run([arguments.coxa, "mesh", "--surface", surface, "--out", out], work / "coxa.log"), out
 
 
+def write_poly(path, points, triangles):
+    lines = [f"{len(points)} 3 0 0"] + [f"{i} {p[0]:.9f} {p[1]:.9f} {p[2]:.9f}" for i, p in enumerate(points)]
+    lines += [f"{len(triangles)} 0"] + [f"1\n3 {t[0]} {t[1]} {t[2]}" for t in triangles] + ["0", "0"]
+    path.write_text("\n".join(lines) + "\n")
+
+
 def by_tetgen(_arguments, judge, surface, work, size):
     points, triangles = surface_arrays(judge, surface)
     poly = work / "tetgen.poly"
-    lines = [f"{len(points)} 3 0 0"] + [f"{i} {p[0]:.9f} {p[1]:.9f} {p[2]:.9f}" for i, p in enumerate(points)]
-    lines += [f"{len(triangles)} 0"] + [f"1\n3 {t[0]} {t[1]} {t[2]}" for t in triangles] + ["0", "0"]
-    poly.write_text("\n".join(lines) + "\n")
+    write_poly(poly, points, triangles)
     # Y keeps the surface's triangles: without it thin shells get ten times the elements; where they are large, their number
     # bounds that of the elements
     seconds = run(["tetgen", f"-pYq1.2/18O9/7a{size ** 3 / 8.5:.6f}", poly], work / "tetgen.log")
     return seconds, work / "tetgen.1.node"
+
+
+def by_tetgen_alone(_arguments, judge, surface, work, size):
+    """With the right to split the surface's triangles too."""
+    points, triangles = surface_arrays(judge, surface)
+    poly = work / "tetgen_alone.poly"
+    write_poly(poly, points, triangles)
+    seconds = run(["tetgen", f"-pq1.414/10O9/7a{size ** 3 / 8.5:.6f}", poly], work / "tetgen_alone.log")
+    return seconds, work / "tetgen_alone.1.node"
 
 
 def by_gmsh(_arguments, judge, surface, work, size):
@@ -113,7 +126,7 @@ def best_of(make, arguments, judge, surface, work, target):
     points, triangles = surface_arrays(judge, surface)
     corners = points[triangles]
     volume = abs(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum()) / 6
-    size, best = (8.5 * volume / target) ** (1 / 3), None
+    size, best, tried = (8.5 * volume / target) ** (1 / 3), None, []
     for _ in range(arguments.tries):
         seconds, mesh = make(arguments, judge, surface, work, size)
         figures = {**measured(judge, mesh, surface), "seconds": seconds}
@@ -121,8 +134,25 @@ def best_of(make, arguments, judge, surface, work, target):
             best = figures
         if abs(figures["tets"] / target - 1) < 0.1:
             break
-        size *= (figures["tets"] / target) ** 0.4
+        tried.append((np.log(size), np.log(figures["tets"] / target)))
+        size = np.exp(next_size(tried))
     return best
+
+
+def next_size(tried):
+    """Logarithm of the element size to try next, from pairs of such and of the ratio of numbers got: between the nearest two on both
+    sides of the number wanted, or else as far as the last two, or a thin body, suggest."""
+    above, below = [t for t in tried if t[1] > 0], [t for t in tried if t[1] <= 0]
+    if above and below:
+        (a, u), (b, v) = min(above, key=lambda t: t[1]), max(below, key=lambda t: t[1])
+        return a + u / (u - v) * (b - a)
+    slope = 2.5  # between a surface's and a body's
+    if len(tried) > 1 and tried[-1][0] != tried[-2][0]:
+        slope = min(max(-(tried[-1][1] - tried[-2][1]) / (tried[-1][0] - tried[-2][0]), 1.0), 4.0)
+    return tried[-1][0] + tried[-1][1] / slope
+
+
+SHOWN = ("coxa", "TetGen", "Gmsh", "CGAL, ridges")  # CGAL at its better setting
 
 
 def draw(results, path):
@@ -130,7 +160,8 @@ def draw(results, path):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.2))
-    for name, figures in results.items():
+    for name in (n for n in SHOWN if n in results):
+        figures = results[name]
         axes[0].hist(figures["dihedral"].ravel(), bins=90, range=(0, 180), density=True, histtype="step", label=name)
         axes[1].hist(figures["aspect"], bins=50, range=(0, 1), density=True, histtype="step", label=name)
     axes[0].set_xlabel("dihedral angle [°]")
@@ -149,6 +180,7 @@ def main():
     parser.add_argument("--shared", type=pathlib.Path, default=ROOT.parent / "shared")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_compare"))
     parser.add_argument("--tries", type=int, default=5, help="element sizes tried to meet coxa's number of tetrahedra")
+    parser.add_argument("--without", default="", help="meshers left out, by their names in the table, between semicolons")
     parser.add_argument("--figure", type=pathlib.Path, help="histograms of all surfaces together")
     parser.add_argument("surfaces", nargs="+", type=pathlib.Path)
     arguments = parser.parse_args()
@@ -156,15 +188,17 @@ def main():
     import mesh_quality as judge
 
     arguments.work.mkdir(parents=True, exist_ok=True)
-    meshers = {"coxa": by_coxa, "TetGen": by_tetgen, "Gmsh": by_gmsh, "CGAL": by_cgal, "CGAL, ridges": by_cgal_with_ridges}
-    there = {"coxa": arguments.coxa.exists(), "TetGen": shutil.which("tetgen"), "Gmsh": shutil.which("gmsh"), "CGAL": arguments.cgal.exists(),
+    meshers = {"coxa": by_coxa, "TetGen": by_tetgen, "TetGen, surface split": by_tetgen_alone,
+               "Gmsh": by_gmsh, "CGAL": by_cgal, "CGAL, ridges": by_cgal_with_ridges}
+    there = {"coxa": arguments.coxa.exists(), "TetGen": shutil.which("tetgen"),
+             "TetGen, surface split": shutil.which("tetgen"), "Gmsh": shutil.which("gmsh"), "CGAL": arguments.cgal.exists(),
              "CGAL, ridges": arguments.cgal.exists()}
     gathered = {}
     print("| surface | mesher | tets | aspect mean | p05 | min | dihedral min | max | mean | inverted | envelope rms | max | s |")
     print("|---|---|---|---|---|---|---|---|---|---|---|---|---|")
     for surface in arguments.surfaces:
         name, target = "/".join(surface.with_suffix("").parts[-3:]), 20000
-        for mesher, make in meshers.items():
+        for mesher, make in ((m, made_by) for m, made_by in meshers.items() if m not in arguments.without.split(";")):
             if not there[mesher]:
                 print(f"| {name} | {mesher} | not installed |")
                 continue

@@ -45,11 +45,11 @@ def class_of(name):
     """Of a body, by the words in its name; labels carry a number, whatever is not named is a muscle."""
     if name.rsplit("_", 1)[-1].isdigit():
         return "labels"
-    kinds = {"labrum": "labra", "transverse_acetabular_ligament": "ligaments", "ligament": "ligaments",
+    kinds = {"labrum": "labra", "ligament": "ligaments",
              "femoral_cartilage": "femoral and acetabular cartilages", "acetabular_cartilage": "femoral and acetabular cartilages",
              "cartilage": "sacroiliac and pubic cartilages", "femur": "femora", "hip_bone": "hip bones", "sacrum": "sacra",
              "patella": "patellae"}
-    return next((kind for word, kind in kinds.items() if word in name and "biceps" not in name and "quadratus" not in name), "muscles")
+    return next((kind for word, kind in kinds.items() if word in name), "muscles")
 
 
 def bodies(shared):
