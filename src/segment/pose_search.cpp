@@ -7,7 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+
+#include "pose_score.h"
 
 namespace coxa::segment {
 namespace {
@@ -15,77 +16,25 @@ namespace {
 /// mm. Image and references are smoothed so far that a grid of this spacing misses nothing.
 constexpr double kGrid = 10.0;
 constexpr double kSmoothing = 3.0;
-/// Vertices per bone that are compared at each place: enough to tell a hip, few enough to try
-/// thousands.
-constexpr Index kProbes = 80;
-/// Share of the probes that must be in view for a place to count in full.
-constexpr double kShareInView = 0.5;
-/// Places that are refined, and how far apart they are, mm.
-constexpr std::size_t kRefined = 8;
+/// Vertices per bone that are compared at each place: enough to tell a hip, few enough to try a
+/// hundred thousand; and at the places that are left.
+constexpr Index kProbes = 100, kManyProbes = 300;
+/// Places that are improved, of them those to which the shape models are fitted, and how far apart
+/// they are, mm. On simulated images the hip is among the first 30 of the grid.
+constexpr std::size_t kImproved = 80, kFitted = 4;
 constexpr double kApart = 18.0;
 /// mm. How far off a place of the grid, and the borders there, may be.
 constexpr double kRefinedRange = 12.0;
 /// rad. Patients lie on the table within about this of the atlas' orientation.
 constexpr double kTurn = 0.26;
+/// Share of the vertices that must be in view for a place to count in full.
+constexpr double kShareInView = 0.5;
 
 struct Candidate {
-  RigidTransform pose;
-  std::string contrast;
+  Similarity pose;
+  Eigen::Index contrast = 0;
   double score = -kInfinity;
 };
-
-/// A few well-spread vertices of a bone with their reference profiles.
-struct Probes {
-  Points points, normals;
-  std::map<std::string, shape::ProfileSet> profiles;
-};
-
-Probes probes_of(const shape::StructureModel& bone) {
-  const SimplexMesh& mesh = bone.hierarchy.levels.back();
-  const Points normals = simplex_normals(mesh);
-  const Index V = mesh.n_vertices(), stride = std::max<Index>(1, V / kProbes);
-  const Index n = (V + stride - 1) / stride;
-  Probes probes{Points(n, 3), Points(n, 3), {}};
-  for (const shape::ProfileSet& all : bone.profiles) {
-    shape::ProfileSet few = all;
-    few.mean.resize(n, all.mean.cols());
-    few.reliability.resize(n);
-    for (Index i = 0; i < n; ++i) {
-      probes.points.row(i) = mesh.points.row(i * stride);
-      probes.normals.row(i) = normals.row(i * stride);
-      few.mean.row(i) = all.mean.row(i * stride);
-      few.reliability[i] = all.reliability[i * stride];
-    }
-    probes.profiles[all.contrast] = few;
-  }
-  return probes;
-}
-
-/// Mean correlation of the probes at a pose; places mostly out of view count less.
-double score_at(const std::vector<Probes>& bones, const PreparedImage& image,
-                const Candidate& candidate) {
-  const ProfileSearch search{.range = 0.0,
-                             .window = 5.0,
-                             .gradient_weight = 0.3,
-                             .shift_penalty = 0.0,
-                             .image_sigma = kSmoothing};
-  double sum = 0.0, weight = 0.0, all = 0.0;
-  for (const Probes& bone : bones) {
-    const auto found = bone.profiles.find(candidate.contrast);
-    if (found == bone.profiles.end()) continue;
-    const ProfileScores scores =
-        score_profiles(image, transformed(bone.points, candidate.pose),
-                       bone.normals * candidate.pose.R.transpose(), found->second, search);
-    for (Index v = 0; v < scores.score.rows(); ++v) {
-      const double w = found->second.reliability[v];
-      all += w;
-      if (std::isnan(scores.score(v, 0))) continue;
-      sum += w * scores.score(v, 0);
-      weight += w;
-    }
-  }
-  return all > 0.0 ? sum / std::max(weight, kShareInView * all) : -kInfinity;
-}
 
 std::vector<Mat3> orientations() {
   std::vector<Mat3> turns = {Mat3::Identity()};
@@ -97,9 +46,7 @@ std::vector<Mat3> orientations() {
   return turns;
 }
 
-std::vector<Candidate> all_candidates(const std::vector<Probes>& bones, const Volume& volume) {
-  std::set<std::string> contrasts;
-  for (const auto& [name, set] : bones.front().profiles) contrasts.insert(name);
+std::vector<Candidate> all_candidates(const Volume& volume) {
   const std::vector<Mat3> turns = orientations();
   std::vector<Candidate> candidates;
   Vec3 extent;
@@ -111,41 +58,87 @@ std::vector<Candidate> all_candidates(const std::vector<Probes>& bones, const Vo
     for (double y = 0.5 * kGrid; y < extent.y(); y += kGrid)
       for (double x = 0.5 * kGrid; x < extent.x(); x += kGrid) {
         const Vec3 p = volume.origin + volume.direction * Vec3(x, y, z);
-        for (const Mat3& R : turns)
-          for (const std::string& contrast : contrasts)
-            candidates.push_back({{R, p}, contrast, -kInfinity});
+        for (const Mat3& R : turns) candidates.push_back({{1.0, {R, p}}, 0, -kInfinity});
       }
   return candidates;
 }
 
+/// What a size far from the atlas' mean costs: adults' hips differ by 7 %, and half the evidence of
+/// a right place (0.2) buys three standard deviations. Small bones fit anywhere.
+double size_cost(double scale) {
+  constexpr double kSpread = 0.07, kCost = 0.01;
+  return kCost * std::pow(std::log(scale) / kSpread, 2);
+}
+
+void update_score(Candidate& candidate, const PoseScore& score) {
+  candidate.score =
+      score.at(candidate.pose).maxCoeff(&candidate.contrast) - size_cost(candidate.pose.scale);
+}
+
 /// The best-scoring candidates that are apart from each other, best first.
-std::vector<Candidate> best_apart(std::vector<Candidate> candidates) {
+std::vector<Candidate> best_apart(std::vector<Candidate> candidates, std::size_t count) {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
   std::vector<Candidate> kept;
   for (const Candidate& candidate : candidates) {
     const bool near = std::any_of(kept.begin(), kept.end(), [&](const Candidate& k) {
-      return (k.pose.p - candidate.pose.p).norm() < kApart && k.contrast == candidate.contrast;
+      return (k.pose.X.p - candidate.pose.X.p).norm() < kApart;
     });
     if (!near) kept.push_back(candidate);
-    if (kept.size() == kRefined) break;
+    if (kept.size() == count) break;
   }
   return kept;
+}
+
+/// One step along a direction of pose space: three of place, three of turn, one of size.
+Similarity stepped(const Similarity& pose, int direction, double share) {
+  constexpr double kPlace = 5.0, kAngle = 0.12, kSize = 0.05;  // mm, rad, of the largest step
+  Similarity moved = pose;
+  if (direction < 3) {
+    moved.X.p += share * kPlace * Vec3::Unit(direction);
+  } else if (direction < 6) {
+    moved.X.R = rotation_from_vector(share * kAngle * Vec3::Unit(direction - 3)) * pose.X.R;
+  } else {
+    moved.scale = std::clamp(pose.scale * (1.0 + share * kSize), 0.8, 1.2);
+  }
+  return moved;
+}
+
+/// The nearest best pose, by steps along one direction after the other that grow smaller.
+Candidate improved(Candidate best, const PoseScore& score) {
+  update_score(best, score);
+  for (const double share : {1.0, 0.5, 0.25}) {
+    for (bool better = true; better;) {
+      better = false;
+      for (int direction = 0; direction < 7; ++direction) {
+        for (const double sign : {-1.0, 1.0}) {
+          Candidate next = best;
+          next.pose = stepped(best.pose, direction, sign * share);
+          update_score(next, score);
+          if (next.score < best.score + 1e-4) continue;
+          best = next;
+          better = true;
+        }
+      }
+    }
+  }
+  return best;
 }
 
 /// Bodies at the candidate's pose, fitted to the image.
 std::vector<Body> refined(const Candidate& candidate,
                           const std::vector<const shape::StructureModel*>& bones,
-                          PreparedImage image, const SegmentOptions& options) {
+                          const std::string& contrast, PreparedImage image,
+                          const SegmentOptions& options) {
   std::vector<Body> bodies;
   for (const shape::StructureModel* bone : bones) {
     Body body;
     body.model = bone;
-    body.points = transformed(bone->hierarchy.levels.back().points, candidate.pose);
-    body.fit = {body.points, {1.0, candidate.pose}, VecX::Zero(bone->shape.deviations.size()), 0.0};
+    body.points = posed(bone->hierarchy.levels.back().points, candidate.pose);
+    body.fit = {body.points, candidate.pose, VecX::Zero(bone->shape.deviations.size()), 0.0};
     bodies.push_back(std::move(body));
   }
-  image.contrast = candidate.contrast;
+  image.contrast = contrast;
   const Resolution resolution{.coarsening = 3,
                               .range = kRefinedRange,
                               .image_sigma = kSmoothing,
@@ -162,13 +155,14 @@ std::vector<Body> refined(const Candidate& candidate,
 }
 
 double fit_score(const std::vector<Body>& bodies) {
-  double sum = 0.0, weight = 0.0, all = 0.0;
+  double sum = 0.0, weight = 0.0, all = 0.0, cost = 0.0;
   for (const Body& body : bodies) {
+    cost += size_cost(body.fit.pose.scale) / static_cast<double>(bodies.size());
     sum += body.match.here.sum();
     weight += body.match.seen.sum();
     all += static_cast<double>(body.match.seen.size());
   }
-  return sum / std::max(weight, kShareInView * all);
+  return sum / std::max(weight, kShareInView * all) - cost;
 }
 
 Vec3 centre_of(const std::vector<Body>& bodies) {
@@ -177,44 +171,70 @@ Vec3 centre_of(const std::vector<Body>& bodies) {
   return sum / static_cast<double>(bodies.size());
 }
 
+/// A start that another place rivals, or that fits little, is none: segmentation from a wrong place
+/// can look sure of itself.
+void check_found(const FoundPose& found) {
+  constexpr double kLeastScore = 0.25, kLeastMargin = 0.05;
+  const char* const advice =
+      "; give at least six landmarks (--landmarks), check the side and that the hip is in the "
+      "image";
+  if (found.score < kLeastScore) {
+    fail(ErrorCode::below_quality,
+         "the hip is not found without landmarks: the best place fits by ", found.score, ", and ",
+         kLeastScore, " is the least", advice);
+  }
+  if (found.margin < kLeastMargin) {
+    fail(ErrorCode::below_quality,
+         "the hip is not found without landmarks: the best place fits by ", found.score,
+         ", another one by only ", found.margin, " less, and ", kLeastMargin, " is the least",
+         advice);
+  }
+}
+
 }  // namespace
 
 FoundPose find_pose(const std::vector<const shape::StructureModel*>& bones,
                     const std::vector<PreparedImage>& images, const SegmentOptions& options,
                     const Monitor& monitor) {
+  const PoseScore few(bones, images.front(), kSmoothing, kProbes),
+      many(bones, images.front(), kSmoothing, kManyProbes);
+  std::vector<Candidate> candidates = all_candidates(images.front().volume);
+  require(!candidates.empty(), "the image is too small to look for a hip in");
+  const auto update_all = [&](const auto& update) {
+    parallel_for(static_cast<std::int64_t>(candidates.size()), [&](Index i) {
+      if (!monitor.cancelled()) update(candidates[static_cast<std::size_t>(i)]);
+    });
+    monitor.check_cancelled();
+  };
+  update_all([&](Candidate& c) { update_score(c, few); });
+  candidates = best_apart(std::move(candidates), kImproved);
+  update_all([&](Candidate& c) { c = improved(c, many); });
+  candidates = best_apart(std::move(candidates), kFitted);
+
   PreparedImage image = images.front();
   image.volume = smoothed(image.volume, kSmoothing);
-  std::vector<Probes> probes;
-  for (const shape::StructureModel* bone : bones) probes.push_back(probes_of(*bone));
-  std::vector<Candidate> candidates = all_candidates(probes, image.volume);
-  require(!candidates.empty(), "the image is too small to look for a hip in");
-  parallel_for(static_cast<std::int64_t>(candidates.size()), [&](Index i) {
-    if (monitor.cancelled()) return;  // a large image has hundreds of thousands
-    Candidate& candidate = candidates[static_cast<std::size_t>(i)];
-    candidate.score = score_at(probes, image, candidate);
-  });
-  monitor.check_cancelled();
-
   FoundPose found;
   found.score = -kInfinity;
-  Vec3 centre = Vec3::Zero();
   std::vector<std::pair<Vec3, double>> results;
-  for (const Candidate& candidate : best_apart(std::move(candidates))) {
+  for (const Candidate& candidate : candidates) {
     monitor.check_cancelled();
-    const std::vector<Body> bodies = refined(candidate, bones, image, options);
+    const std::string& contrast = few.contrasts()[static_cast<std::size_t>(candidate.contrast)];
+    const std::vector<Body> bodies = refined(candidate, bones, contrast, image, options);
     const double score = fit_score(bodies);
     results.emplace_back(centre_of(bodies), score);
     if (score <= found.score) continue;
     found.score = score;
-    centre = results.back().first;
+    found.centre = results.back().first;
+    found.contrast = contrast;
     found.placed.clear();
     for (const Body& body : bodies) found.placed.push_back(body.fit.points);
   }
   double rival = -1.0;
   for (const auto& [place, score] : results) {
-    if ((place - centre).norm() > kApart) rival = std::max(rival, score);
+    if ((place - found.centre).norm() > kApart) rival = std::max(rival, score);
   }
   found.margin = found.score - rival;
+  check_found(found);
   return found;
 }
 

@@ -178,6 +178,27 @@ TEST(Segment, RefusesAnImageThatDoesNotShowTheHip) {
   EXPECT_NE(text_of_failure({noise}, marks, options()).find("quality"), std::string::npos);
 }
 
+TEST(Segment, RefusesAStartThatNothingSupportsOrThatHasARival) {
+  Volume noise = image();
+  Rng rng(3);
+  for (float& value : noise.values) value = static_cast<float>(100.0 + 40.0 * rng.normal());
+  EXPECT_NE(text_of_failure({noise}, {}, options()).find("not found without landmarks"),
+            std::string::npos);
+  // the same egg twice, side by side
+  const Volume& one = image();
+  Volume two = one;
+  two.size[0] = 2 * one.size[0];
+  two.values.resize(static_cast<std::size_t>(two.n_voxels()));
+  for (Index k = 0; k < two.size[2]; ++k) {
+    for (Index j = 0; j < two.size[1]; ++j) {
+      for (Index i = 0; i < two.size[0]; ++i)
+        two.values[static_cast<std::size_t>(two.offset(i, j, k))] =
+            one.values[static_cast<std::size_t>(one.offset(i % one.size[0], j, k))];
+    }
+  }
+  EXPECT_NE(text_of_failure({two}, {}, options()).find("another one by only"), std::string::npos);
+}
+
 TEST(Segment, RefusesNoImageAndTooFewLandmarks) {
   EXPECT_NE(text_of_failure({}, toy::landmarks_of(kEgg), options()), "");
   shape::Landmarks few = toy::landmarks_of(kEgg);
