@@ -153,11 +153,15 @@ void update_border(BareBone& bare, std::vector<BorderRay>& rays, const BorderMod
 
 }  // namespace
 
-void update_borders(std::vector<BareBone>& bones, std::span<const PreparedImage> images) {
+std::vector<double> update_borders(std::vector<BareBone>& bones,
+                                   std::span<const PreparedImage> images) {
   std::vector<std::vector<BorderRay>> rays;
   for (const BareBone& bare : bones) rays.push_back(border_rays(*bare.bone, images));
   const BorderModels models = fitted_models(rays, images.size());
   for (std::size_t b = 0; b < bones.size(); ++b) update_border(bones[b], rays[b], models);
+  std::vector<double> blur;
+  for (std::size_t i = 0; i < images.size(); ++i) blur.push_back(models.blur_share(i));
+  return blur;
 }
 
 }  // namespace coxa::segment

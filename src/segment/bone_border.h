@@ -20,6 +20,8 @@ struct BareBone {
 ///
 /// A tendon or a capsule on the bone is as dark as its cortex, and the dark band wider than beside:
 /// there the cortex is taken to be as thick as around.
-void update_borders(std::vector<BareBone>& bones, std::span<const PreparedImage> images);
+/// @returns by image: standard deviation of its blur in half voxels, 1 where bones do not show it
+std::vector<double> update_borders(std::vector<BareBone>& bones,
+                                   std::span<const PreparedImage> images);
 
 }  // namespace coxa::segment

@@ -36,6 +36,8 @@ class BorderModels {
   void add(const std::vector<BorderRay>& rays, std::size_t image, const BorderLook& look);
   BorderFit fit(const BorderRay& ray, const BandPrior& prior = {}) const;
   bool has(std::size_t image) const { return share_.contains(image); }
+  /// Standard deviation of an image's blur, in half voxels; 1 where it is not known.
+  double blur_share(std::size_t image) const { return has(image) ? share_.at(image) : 1.0; }
 
  private:
   std::pair<std::size_t, long> key(const BorderRay& ray) const;

@@ -13,8 +13,8 @@ constexpr double kWellInside = 3.0, kWellOutside = 4.0;
 constexpr std::size_t kFewest = 50;
 // thresholds of evidence tried, and what counts as equally good (share told right)
 constexpr double kLargestThreshold = 0.75, kThresholdStep = 0.25, kNearlyEqual = 0.005;
-// profiles blurred more than this (mm, half a voxel) say less about layers of a millimetre
-constexpr double kSharp = 0.6;
+// profiles blurred more than this (mm) say less about layers of a millimetre
+constexpr double kSharp = 0.75;
 // evidence beyond the threshold that makes a vertex certain
 constexpr double kCertain = 4.0;
 // a layer thins out to its border, and less than about 0.6 mm of it vanishes between the dark
@@ -73,8 +73,9 @@ std::pair<double, double> update_coverage(Coverage& coverage, const std::vector<
 }  // namespace
 
 std::vector<Coverage> coverages_of(std::span<const HostPatch> patches,
-                                   std::span<const PreparedImage> images) {
-  std::vector<CoverageRay> rays = coverage_rays(patches, images);
+                                   std::span<const PreparedImage> images,
+                                   std::span<const double> blur) {
+  std::vector<CoverageRay> rays = coverage_rays(patches, images, blur);
   const std::vector<TissueBrightness> brightness = update_fits(rays, images.size());
   std::vector<Coverage> coverages;
   for (std::size_t p = 0; p < patches.size(); ++p) {

@@ -25,7 +25,9 @@ struct Coverage {
 };
 
 /// Coverage of each patch by layered profiles along its normals.
+/// @param blur by image: its standard deviation in half voxels
 std::vector<Coverage> coverages_of(std::span<const HostPatch> patches,
-                                   std::span<const PreparedImage> images);
+                                   std::span<const PreparedImage> images,
+                                   std::span<const double> blur);
 
 }  // namespace coxa::segment

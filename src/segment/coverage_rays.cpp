@@ -21,8 +21,9 @@ constexpr double kIntoCartilage = 1.5;
 constexpr double kModelError = 0.06;
 // the cartilage's brightness is known so well before and after a first fit (relative)
 constexpr double kFirstSpread = 0.3, kSecondSpread = 0.06;
-// fits of clear layers at least this thick (mm) and this much likelier than bare bone tell it
-constexpr double kThickEnough = 1.2, kClear = 3.0;
+// fits of clear layers at least this thick (mm) and this much likelier than bare bone tell it; a
+// dark cartilage's brightness shows only where the layer is thicker than the blur
+constexpr double kThickEnough = 1.2, kThickEnoughDark = 2.0, kClear = 3.0;
 constexpr std::size_t kFewest = 50, kEnough = 200;
 // brightnesses tried, as shares of the first guess
 constexpr double kLowestShare = 0.8, kHighestShare = 1.7, kShareStep = 1.06;
@@ -90,14 +91,14 @@ void update_fits_in(std::vector<CoverageRay>& rays, std::size_t image,
 /// glare counts into a thin layer's: these are left out.
 std::vector<CoverageRay> telling_rays(const std::vector<CoverageRay>& rays, std::size_t image,
                                       const TissueBrightness& brightness) {
+  const double thick = brightness.cartilage > brightness.marrow ? kThickEnough : kThickEnoughDark;
   std::vector<CoverageRay> telling;
   for (const CoverageRay& ray : rays) {
     if (ray.image != image || ray.rim_distance <= 0.0) continue;
     const LayerFit& fit = ray.fit;
     const bool beside_fluid =
         brightness.cartilage > brightness.marrow && fit.beyond > fit.cartilage;
-    if (!beside_fluid && fit.thickness >= kThickEnough && fit.evidence > kClear)
-      telling.push_back(ray);
+    if (!beside_fluid && fit.thickness >= thick && fit.evidence > kClear) telling.push_back(ray);
   }
   if (telling.size() < kFewest) return {};
   const std::size_t stride = (telling.size() + kEnough - 1) / kEnough;
@@ -129,6 +130,13 @@ double likeliest_cartilage(const std::vector<CoverageRay>& telling, std::size_t 
   return best;
 }
 
+/// What a well explained sample costs: the mean over clear layers, to which all ends are seen.
+double mean_misfit(const std::vector<CoverageRay>& telling) {
+  double sum = 0.0;
+  for (const CoverageRay& ray : telling) sum += ray.fit.misfit;
+  return telling.empty() ? 1.0 : sum / static_cast<double>(telling.size());
+}
+
 }  // namespace
 
 double blur_along(const Volume& volume, const Vec3& normal) {
@@ -142,7 +150,8 @@ double quantile(std::vector<double> values, double share) {
 }
 
 std::vector<CoverageRay> coverage_rays(std::span<const HostPatch> patches,
-                                       std::span<const PreparedImage> images) {
+                                       std::span<const PreparedImage> images,
+                                       std::span<const double> blurs) {
   std::vector<CoverageRay> rays;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const HostPatch& patch = patches[p];
@@ -154,7 +163,7 @@ std::vector<CoverageRay> coverage_rays(std::span<const HostPatch> patches,
       ray.rim_distance = patch.rim_distance[v];
       const Vec3 place = patch.mesh.points.row(v), normal = patch.normals.row(v);
       for (std::size_t i = 0; i < images.size(); ++i) {
-        const double blur = blur_along(images[i].volume, normal);
+        const double blur = blurs[i] * blur_along(images[i].volume, normal);
         if (ray.profile.size() > 0 && ray.blur <= blur) continue;
         auto values = profile_along(images[i].volume, place, normal, kGrid);
         if (!values) continue;
@@ -178,8 +187,9 @@ std::vector<TissueBrightness> update_fits(std::vector<CoverageRay>& rays, std::s
       continue;
     }
     update_fits_in(rays, image, *brightness);
-    brightness->cartilage =
-        likeliest_cartilage(telling_rays(rays, image, *brightness), image, *brightness);
+    const std::vector<CoverageRay> telling = telling_rays(rays, image, *brightness);
+    if (brightness->cartilage <= brightness->marrow) brightness->unexplained = mean_misfit(telling);
+    brightness->cartilage = likeliest_cartilage(telling, image, *brightness);
     brightness->cartilage_deviation = kSecondSpread * std::abs(brightness->cartilage);
     update_fits_in(rays, image, *brightness);
     all[image] = *brightness;

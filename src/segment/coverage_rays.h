@@ -20,8 +20,10 @@ struct CoverageRay {
 };
 
 /// Rays of all vertices that an image shows.
+/// @param blur by image: its standard deviation in half voxels
 std::vector<CoverageRay> coverage_rays(std::span<const HostPatch> patches,
-                                       std::span<const PreparedImage> images);
+                                       std::span<const PreparedImage> images,
+                                       std::span<const double> blur);
 
 /// Fits layers to every ray, with brightnesses of the tissues taken from the rays beneath the
 /// present layers, image by image. A ray of an image that shows too few of these loses its image's

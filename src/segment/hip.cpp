@@ -241,7 +241,7 @@ void Hip::segment_muscles(const Monitor& monitor) {
   for (std::size_t m = 0; m < muscles.size(); ++m) bodies_[numbers[m]] = std::move(muscles[m]);
 }
 
-void Hip::update_bones(std::vector<Surface>& surfaces) const {
+std::vector<double> Hip::update_bones(std::vector<Surface>& surfaces) const {
   std::vector<BareBone> bones;
   for (std::size_t s = 0; s < bodies_.size(); ++s) {
     if (!is_bone(s)) continue;
@@ -250,7 +250,7 @@ void Hip::update_bones(std::vector<Surface>& surfaces) const {
       if (hosts_[l] == s) bones.back().layers.push_back(&surfaces[l].mesh);
     }
   }
-  update_borders(bones, images_);
+  return update_borders(bones, images_);
 }
 
 std::vector<Surface> Hip::surfaces(std::vector<std::string>& warnings) const {
@@ -259,7 +259,7 @@ std::vector<Surface> Hip::surfaces(std::vector<std::string>& warnings) const {
   std::vector<ExtentLayer> sided;
   std::vector<std::string> names;
   std::vector<LaidLayer> layers;
-  update_bones(surfaces);
+  const std::vector<double> blur = update_bones(surfaces);
   for (std::size_t s = 0; s < bodies_.size(); ++s) {
     if (!hosts_[s]) continue;
     TriMesh *layer = &surfaces[s].mesh, *host = &surfaces[*hosts_[s]].mesh;
@@ -268,7 +268,7 @@ std::vector<Surface> Hip::surfaces(std::vector<std::string>& warnings) const {
     sided.push_back({layer, host, models_[s]->n_bone_side});
     names.push_back(models_[s]->name);
   }
-  const std::vector<FoundExtent> found = update_extents(sided, images_);
+  const std::vector<FoundExtent> found = update_extents(sided, images_, blur);
   for (std::size_t l = 0; l < sided.size(); ++l) {
     if (found[l].changed()) continue;
     const std::string why = found[l].folds ? "what the image shows would fold it"

@@ -39,7 +39,8 @@ class Hip {
   std::vector<Body> found_by(const std::vector<Resolution>& resolutions, std::vector<Body> bones,
                              const Monitor& monitor) const;
   /// Takes the bones' surfaces to the borders that the images show where they are bare.
-  void update_bones(std::vector<Surface>& surfaces) const;
+  /// @returns by image: standard deviation of its blur in half voxels
+  std::vector<double> update_bones(std::vector<Surface>& surfaces) const;
   /// Layers with sides known start with the modes that fit the images best.
   void place_layers(std::vector<Body>& layers, const std::vector<TriMesh>& means,
                     const std::vector<TriMesh>& seats, Resolution resolution);

@@ -44,7 +44,8 @@ struct Measured {
 };
 
 std::vector<Measured> measured(const std::vector<ExtentLayer>& layers,
-                               std::span<const PreparedImage> images) {
+                               std::span<const PreparedImage> images,
+                               std::span<const double> blur) {
   std::vector<Measured> all;
   std::vector<HostPatch> patches;
   for (const ExtentLayer& layer : layers) {
@@ -54,7 +55,7 @@ std::vector<Measured> measured(const std::vector<ExtentLayer>& layers,
     patches.push_back(patch_about(*layer.host, m.sheet.sheet, kPatchReach));
     all.push_back(std::move(m));
   }
-  std::vector<Coverage> coverages = coverages_of(patches, images);
+  std::vector<Coverage> coverages = coverages_of(patches, images, blur);
   for (std::size_t l = 0; l < layers.size(); ++l) {
     all[l].patch = std::move(patches[l]);
     all[l].coverage = std::move(coverages[l]);
@@ -175,8 +176,9 @@ void update_layer(TriMesh& layer, const Measured& m, const VecX& thickness) {
 }  // namespace
 
 std::vector<FoundExtent> update_extents(std::vector<ExtentLayer>& layers,
-                                        std::span<const PreparedImage> images) {
-  std::vector<Measured> all = measured(layers, images);
+                                        std::span<const PreparedImage> images,
+                                        std::span<const double> blur) {
+  std::vector<Measured> all = measured(layers, images, blur);
   std::vector<FoundExtent> found;
   for (const Measured& m : all) found.push_back({m.coverage.separation, false});
   std::vector<VecX> moved;

@@ -32,9 +32,11 @@ struct FoundExtent {
 /// to where they part; the bone beneath takes the place of its border, the layer the thickness
 /// found. Where two layers touch without anything between, the images show the sum of both only: it
 /// is shared as the layers have it now.
+/// @param blur by image: its standard deviation in half voxels
 /// A layer stays as it is where the images tell fewer than `kTellsApart` of the places apart, or
 /// where the new one would cut itself.
 std::vector<FoundExtent> update_extents(std::vector<ExtentLayer>& layers,
-                                        std::span<const PreparedImage> images);
+                                        std::span<const PreparedImage> images,
+                                        std::span<const double> blur);
 
 }  // namespace coxa::segment
