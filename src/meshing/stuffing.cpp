@@ -33,6 +33,10 @@ class Stuffing {
           add_if_cut(std::min(t[i], t[j]), std::max(t[i], t[j]));
     std::sort(edges_.begin(), edges_.end());
     edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+    cut_at_.resize(original_.size());
+    for (std::size_t e = 0; e < edges_.size(); ++e)
+      for (const Index v : {edges_[e].first, edges_[e].second})
+        cut_at_[at(v)].push_back(static_cast<Index>(e));
     stays_.assign(original_.size(), 0);
   }
 
@@ -93,16 +97,11 @@ class Stuffing {
       double distance = kInfinity;
       Index other = -1;
     };
-    std::vector<std::vector<Index>> cut_at(original_.size());
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-      cut_at[at(edges_[e].first)].push_back(static_cast<Index>(e));
-      cut_at[at(edges_[e].second)].push_back(static_cast<Index>(e));
-    }
     for (double& v : values_) v = off_zero(v);
-    for (std::size_t v = 0; v < cut_at.size(); ++v) {
+    for (std::size_t v = 0; v < cut_at_.size(); ++v) {
       if (stays_[v]) continue;
       Pull best;
-      for (const Index e : cut_at[v]) {
+      for (const Index e : cut_at_[v]) {
         const Edge edge = edges_[at(e)];
         const bool first = at(edge.first) == v;
         const Index other = first ? edge.second : edge.first;
@@ -205,8 +204,9 @@ class Stuffing {
   const Lattice& lattice_;
   std::vector<double> original_, values_;  // positive inside, mm
   std::vector<char> stays_;
-  std::vector<Edge> edges_;  // cut by the surface, sorted
-  std::vector<Index> cuts_;  // node on each of them
+  std::vector<Edge> edges_;                 // cut by the surface, sorted
+  std::vector<std::vector<Index>> cut_at_;  // by the lattice points at their ends
+  std::vector<Index> cuts_;                 // node on each of them
   TetGrid grid_;
   std::vector<Vec3> regular_;  // nodes where the lattice has them, and cuts midway
   std::vector<Index> folded_;  // corners of elements without volume
@@ -217,6 +217,7 @@ using Face = std::array<Index, 3>;
 // opposite faces of the elements around v, corners ascending
 std::vector<Face> link_of(const TetGrid& grid, Index v) {
   std::vector<Face> link;
+  link.reserve(grid.around[at(v)].size());
   for (const Index t : grid.around[at(v)]) {
     Face f{};
     std::size_t n = 0;
@@ -228,10 +229,18 @@ std::vector<Face> link_of(const TetGrid& grid, Index v) {
   return link;
 }
 
-// a disc or a sphere: connected by edges, and of the right Euler characteristic
-bool is_simple(const std::vector<Face>& link) {
+// what a node is looked at with, kept for the next one
+struct LinkLists {
   std::vector<std::pair<Edge, std::size_t>> edges;
   std::vector<Index> nodes;
+  std::vector<std::size_t> piece;
+};
+
+// a disc or a sphere: connected by edges, and of the right Euler characteristic
+bool is_simple(const std::vector<Face>& link, LinkLists& lists) {
+  auto& [edges, nodes, piece] = lists;
+  edges.clear();
+  nodes.clear();
   for (std::size_t f = 0; f < link.size(); ++f) {
     const auto [a, b, c] = link[f];
     for (const Edge& e : {Edge{a, b}, Edge{b, c}, Edge{a, c}}) edges.emplace_back(e, f);
@@ -240,7 +249,7 @@ bool is_simple(const std::vector<Face>& link) {
   std::sort(edges.begin(), edges.end());
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  std::vector<std::size_t> piece(link.size());
+  piece.resize(link.size());
   for (std::size_t f = 0; f < piece.size(); ++f) piece[f] = f;
   std::size_t n_edges = 0, n_pairs = 0, n_pieces = link.size();
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -264,9 +273,11 @@ bool is_simple(const std::vector<Face>& link) {
 
 std::vector<Index> pinched_nodes(const TetGrid& grid) {
   std::vector<Index> found;
+  LinkLists lists;
   for (std::size_t v = 0; v < grid.x.size(); ++v) {
     if (grid.kinds[v] == NodeKind::inside || grid.around[v].empty()) continue;
-    if (!is_simple(link_of(grid, static_cast<Index>(v)))) found.push_back(static_cast<Index>(v));
+    if (!is_simple(link_of(grid, static_cast<Index>(v)), lists))
+      found.push_back(static_cast<Index>(v));
   }
   return found;
 }

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 namespace coxa::meshing {
 namespace {
@@ -12,9 +15,29 @@ struct Facet {
   std::array<Index, 3> sorted, outward;
 };
 
+// in the order of their lowest corner, those of one corner in the order of the others
+void update_ordered(std::vector<Facet>& facets) {
+  Index n_nodes = 0;
+  for (const Facet& f : facets) n_nodes = std::max(n_nodes, f.sorted[0] + 1);
+  std::vector<std::size_t> begin(at(n_nodes) + 1, 0);
+  for (const Facet& f : facets) ++begin[at(f.sorted[0]) + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Facet> ordered(facets.size());
+  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+  for (const Facet& f : facets) ordered[next[at(f.sorted[0])]++] = f;
+  const auto place = [&](std::size_t i) {
+    return ordered.begin() + static_cast<std::ptrdiff_t>(i);
+  };
+  for (std::size_t v = 0; v < next.size(); ++v)
+    std::sort(place(begin[v]), place(begin[v + 1]),
+              [](const Facet& a, const Facet& b) { return a.sorted < b.sorted; });
+  facets = std::move(ordered);
+}
+
 // facets of one tetrahedron only, in ascending order of their sorted corners
 std::vector<Facet> single_facets(const std::vector<Tet>& tets) {
   std::vector<Facet> all;
+  all.reserve(4 * tets.size());
   for (const Tet& t : tets) {
     if (t[0] < 0) continue;
     for (const std::array<Index, 3>& f :
@@ -25,8 +48,7 @@ std::vector<Facet> single_facets(const std::vector<Tet>& tets) {
       all.push_back({sorted, f});
     }
   }
-  std::sort(all.begin(), all.end(),
-            [](const Facet& a, const Facet& b) { return a.sorted < b.sorted; });
+  update_ordered(all);
   std::vector<Facet> single;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const bool with_next = i + 1 < all.size() && all[i].sorted == all[i + 1].sorted;

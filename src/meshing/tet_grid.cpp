@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <vector>
 
 namespace coxa::meshing {
 
@@ -35,6 +36,10 @@ void TetGrid::link() {
              tets.end());
   reach.resize(x.size(), 0.0);
   around.assign(x.size(), {});
+  std::vector<std::size_t> count(x.size(), 0);
+  for (const Tet& t : tets)
+    for (const Index v : t) ++count[static_cast<std::size_t>(v)];
+  for (std::size_t v = 0; v < around.size(); ++v) around[v].reserve(count[v]);
   for (std::size_t t = 0; t < tets.size(); ++t) {
     for (const Index v : tets[t])
       around[static_cast<std::size_t>(v)].push_back(static_cast<Index>(t));
