@@ -56,35 +56,43 @@ ElementAssembly::ElementAssembly(const TetMesh& mesh, ParticleMap map,
   scatter_ = Scatter(std::move(start), std::move(particle));
 }
 
+LaneElements ElementAssembly::lane_elements(const VecX& x, const Index (&element)[kLanes],
+                                            LanePositions& positions) const {
+  LaneElements elements;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Index e = element[lane];
+    for (int a = 0; a < 4; ++a) {
+      const Size k = corner(e, a);
+      positions.of[lane][a] =
+          x.segment<3>(3 * Eigen::Index{scatter_.particle(k)}) + offset_.row(node_[k]).transpose();
+      elements.position[lane][a] = positions.of[lane][a].data();
+    }
+    elements.gradient[lane] = shape_gradient_[4 * static_cast<Size>(e)].data();
+    elements.weight[lane] = weight_[static_cast<Size>(e)];
+  }
+  return elements;
+}
+
 double ElementAssembly::add_force_in_lanes(const Material& material, const VecX& x,
                                            VecX& force) const {
   part_.resize(node_.size());
   VecX energies(n_elements_);
   parallel_for((n_elements_ + kLanes - 1) / kLanes, [&](Index group) {
-    LaneElements elements;
-    Vec3 position[kLanes][4];
-    for (int lane = 0; lane < kLanes; ++lane) {
-      // the last group is filled up with its last element
-      const Index e = std::min(kLanes * group + lane, n_elements_ - 1);
-      for (int a = 0; a < 4; ++a) {
-        const Size k = corner(e, a);
-        position[lane][a] = x.segment<3>(3 * Eigen::Index{scatter_.particle(k)}) +
-                            offset_.row(node_[k]).transpose();
-        elements.position[lane][a] = position[lane][a].data();
-      }
-      elements.gradient[lane] = shape_gradient_[4 * static_cast<Size>(e)].data();
-      elements.weight[lane] = weight_[static_cast<Size>(e)];
-      elements.force[lane] = part_[4 * static_cast<Size>(e)].data();
-    }
+    // the last group is filled up with its last element
+    Index element[kLanes];
+    for (int lane = 0; lane < kLanes; ++lane)
+      element[lane] = std::min(kLanes * group + lane, n_elements_ - 1);
+    LanePositions positions;
+    LaneElements elements = lane_elements(x, element, positions);
+    for (int lane = 0; lane < kLanes; ++lane)
+      elements.force[lane] = part_[4 * static_cast<Size>(element[lane])].data();
     LaneMat3 F, P;
     double density[kLanes];
     deformation_gradients(elements, F);
     material.energies_with_piolas(F, P, density);
     set_node_forces(elements, P);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const Index e = std::min(kLanes * group + lane, n_elements_ - 1);
-      energies[e] = elements.weight[lane] * density[lane];
-    }
+    for (int lane = 0; lane < kLanes; ++lane)
+      energies[element[lane]] = elements.weight[lane] * density[lane];
   });
   scatter_.gather_force(part_.data(), force);
   return energies.sum();

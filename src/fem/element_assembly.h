@@ -76,6 +76,12 @@ class ElementAssembly {
     scatter_.gather_force(part, force);
   }
 
+  /// Four four-node elements as they are at x; where their forces go is the caller's.
+  struct LanePositions {
+    Vec3 of[kLanes][4];
+  };
+  LaneElements lane_elements(const VecX& x, const Index (&element)[kLanes],
+                             LanePositions& positions) const;
   /// Adds the forces of four-node elements, four at a time, and returns the sum of their energies.
   double add_force_in_lanes(const Material& material, const VecX& x, VecX& force) const;
 

@@ -140,6 +140,13 @@ COXA_IN_LANES void corotational_response(const Lame& lame, const LaneMat3& F, co
   for (int lane = 0; lane < kLanes; ++lane) energy[lane] = density[lane];
 }
 
+COXA_IN_LANES void inner_products(const LaneMat3& A, const LaneMat3& B, double* products) {
+  Lanes sum = {};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) sum += A.at[i][j] * B.at[i][j];
+  for (int lane = 0; lane < kLanes; ++lane) products[lane] = sum[lane];
+}
+
 COXA_IN_LANES double least_determinant(const LaneMat3& F) {
   Lanes cofactor[3][3];
   set_cofactors(F.at, cofactor);

@@ -44,6 +44,8 @@ unsigned polar_rotations(const LaneMat3& F, LaneMat3& R);
 /// The corotational law's stress and energy density for F = R S.
 void corotational_response(const Lame& lame, const LaneMat3& F, const LaneMat3& R, LaneMat3& P,
                            double* energy);
+/// A : B of every lane.
+void inner_products(const LaneMat3& A, const LaneMat3& B, double* products);
 /// Least det F of the lanes.
 double least_determinant(const LaneMat3& F);
 

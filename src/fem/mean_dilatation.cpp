@@ -106,6 +106,7 @@ struct MeanDilatation::Impl {
   }
   /// The same; sets the gradient of mean times rest volume by the patch's slots.
   double mean_with_gradient(const VecX& x, Index patch, Vec3* gradient) const {
+    if (assembly.n_nodes() == 4) return mean_in_lanes(x, patch, gradient);
     std::fill_n(gradient, scatter.size(patch), Vec3::Zero());
     double sum = 0.0;
     each_element(patch, [&](Index e, Size k) {
@@ -117,6 +118,35 @@ struct MeanDilatation::Impl {
           gradient[slot(k, a)] += weight * (slope * assembly.shape_gradient(e, q, a));
       }
     });
+    return sum / rest_volume[static_cast<Size>(patch)];
+  }
+  /// The same for four-node elements, four at a time.
+  double mean_in_lanes(const VecX& x, Index patch, Vec3* gradient) const {
+    std::fill_n(gradient, scatter.size(patch), Vec3::Zero());
+    double sum = 0.0;
+    const auto first = static_cast<Size>(patches.start[static_cast<Size>(patch)]);
+    const auto last = static_cast<Size>(patches.start[static_cast<Size>(patch) + 1]);
+    for (Size k = first; k < last; k += kLanes) {
+      // the last group is filled up with its last element
+      const int n = static_cast<int>(std::min<Size>(kLanes, last - k));
+      Index element[kLanes];
+      for (int lane = 0; lane < kLanes; ++lane)
+        element[lane] = patches.elements[std::min(k + static_cast<Size>(lane), last - 1)];
+      ElementAssembly::LanePositions positions;
+      LaneElements elements = assembly.lane_elements(x, element, positions);
+      double pull[kLanes][12], value[kLanes];
+      for (int lane = 0; lane < kLanes; ++lane) elements.force[lane] = pull[lane];
+      LaneMat3 F, slope;
+      deformation_gradients(elements, F);
+      measure->energies_with_piolas(F, slope, value);
+      set_node_forces(elements, slope);
+      for (int lane = 0; lane < n; ++lane) {
+        sum += elements.weight[lane] * value[lane];
+        for (int a = 0; a < 4; ++a)
+          gradient[slot(k + static_cast<Size>(lane), a)] -=
+              Eigen::Map<const Vec3>(pull[lane] + 3 * a);
+      }
+    }
     return sum / rest_volume[static_cast<Size>(patch)];
   }
   /// Adds factor times the second derivative of mean times rest volume.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "cofactor.h"
+#include "lanes.h"
 #include "point_blocks.h"
 #include "polar_rotation.h"
 #include "principal_material.h"
@@ -53,6 +54,10 @@ class StretchSum : public PrincipalMaterial {
   double energy_with_piola(const Mat3& F, Mat3& P) const override {
     P = first_piola(F);
     return P.cwiseProduct(F).sum();
+  }
+  void energies_with_piolas(const LaneMat3& F, LaneMat3& P, double* energy) const override {
+    if (polar_rotations(F, P) != 0) return Material::energies_with_piolas(F, P, energy);
+    inner_products(P, F, energy);
   }
   void add_blocks(const Mat3& F, Tangent kind, double factor, std::span<const Vec3> r,
                   Mat3* blocks) const override {
