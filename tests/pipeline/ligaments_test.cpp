@@ -119,6 +119,43 @@ TEST(Ligaments, AreWrittenToTheJointFileAsTheyWereRead) {
   EXPECT_GT(model.ligaments[0].slack_length, 50.1);
   EXPECT_EQ(model.ligaments[1].slack_length, 300.0);
 }
+TEST(Labrum, OfTheJointFileIsTheSoftOneWithItsModulus) {
+  const test::SmallRun small("labrum_file");
+  JointRequest request;
+  request.acetabular_cartilage = request.labrum_mesh = small / "mesh/acetabular_cartilage.vtu";
+  request.femoral_cartilage = small / "mesh/femoral_cartilage.vtu";
+  request.motion = small / "mesh";
+  request.joint.labrum_modulus = 33.0;
+  request.joint.labrum_poisson_ratio = 0.3;
+  io::write_bytes(small / "joint.toml", to_toml(request, small / ""));
+  const JointRequest again = read_joint_request(small / "joint.toml");
+  EXPECT_TRUE(fs::equivalent(again.labrum_mesh, request.labrum_mesh));
+  const joint::JointModel model = read_joint_model(again, {});
+  EXPECT_GT(model.labrum_body.n_tets(), 0);
+  EXPECT_EQ(model.labrum_material.youngs_modulus, 33.0);
+  EXPECT_EQ(model.labrum_material.poissons_ratio, 0.3);
+  EXPECT_NE(error_of("[joint]\nlabrum_young_mpa = -1.0\n").find("labrum_young_mpa"),
+            std::string::npos);
+  EXPECT_NE(error_of("[joint]\nvolume_change = \"nodes\"\n").find("\"patches\" or \"elements\""),
+            std::string::npos);
+
+  // the summary has as many cells as its header on every line
+  joint::JointResult result;
+  result.has_labrum_body = true;
+  result.frames.resize(2);
+  result.frames[0].status = joint::FrameStatus::converged;
+  motion::HipMotion motion;
+  motion.time = {0.0, 1.0};
+  const std::string text = summary_csv(motion, result);
+  EXPECT_NE(text.find(",force_on_labrum_N,labrum_pressure_p99_MPa,"), std::string::npos);
+  std::vector<std::ptrdiff_t> commas{0};
+  for (const char c : text) {
+    if (c == ',') ++commas.back();
+    if (c == '\n') commas.push_back(0);
+  }
+  EXPECT_EQ(commas[1], commas[0]);
+  EXPECT_EQ(commas[2], commas[0]);
+}
 TEST(Ligaments, OfTheFileAreCheckedByKey) {
   EXPECT_NE(error_of("[joint]\nbare_bone = \"femur\"\n").find("must be \"hip_bone\" or \"both\""),
             std::string::npos);
