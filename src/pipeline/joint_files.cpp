@@ -35,8 +35,33 @@ io::TetFields element_fields(const joint::StressFields& fields) {
   return out;
 }
 
+/// What each node and element of a body bore at most in any frame.
+class Maxima {
+ public:
+  void add(const io::TetFields& frame) {
+    take(fields_.at_points["contact_pressure_MPa"], frame.at_points.at("contact_pressure_MPa"));
+    take(fields_.at_tets["von_mises_MPa"], frame.at_tets.at("von_mises_MPa"));
+    const MatX& strain = frame.at_tets.at("principal_strain");
+    take(fields_.at_tets["stretching"], strain.col(0));
+    take(fields_.at_tets["compression"], -strain.col(2));
+  }
+  /// On the undeformed mesh; nothing where no frame was added.
+  void write(const fs::path& path, const TetMesh& mesh) const {
+    if (!fields_.at_points.empty()) io::write_tets(path, mesh, fields_);
+  }
+
+ private:
+  static void take(MatX& most, const MatX& value) {
+    most = most.size() == 0 ? value : MatX(most.cwiseMax(value));
+  }
+  io::TetFields fields_;
+};
+struct BodyMaxima {
+  Maxima acetabular, femoral, labrum;
+};
+
 void write_frame(const fs::path& folder, const joint::JointModel& model,
-                 const joint::FrameResult& frame) {
+                 const joint::FrameResult& frame, BodyMaxima& maxima) {
   io::TetFields acetabular = element_fields(joint::acetabular_fields(model, frame));
   acetabular.at_points["displacement_mm"] = frame.acetabular_displacement;
   acetabular.at_points["contact_pressure_MPa"] = frame.acetabular_pressure;
@@ -44,6 +69,7 @@ void write_frame(const fs::path& folder, const joint::JointModel& model,
   TetMesh mesh = model.acetabular_cartilage;
   mesh.points += frame.acetabular_displacement;
   io::write_tets(folder / numbered("acetabular", frame.frame), mesh, acetabular);
+  maxima.acetabular.add(acetabular);
 
   io::TetFields femoral = element_fields(joint::femoral_fields(model, frame));
   femoral.at_points["displacement_mm"] = frame.femoral_displacement;
@@ -51,6 +77,7 @@ void write_frame(const fs::path& folder, const joint::JointModel& model,
   mesh = model.femoral_cartilage;
   mesh.points = transformed(mesh.points, frame.X_II) + frame.femoral_displacement;
   io::write_tets(folder / numbered("femoral", frame.frame), mesh, femoral);
+  maxima.femoral.add(femoral);
   if (frame.labrum_displacement.rows() == 0) return;
 
   io::TetFields labrum = element_fields(joint::labrum_fields(model, frame));
@@ -59,6 +86,7 @@ void write_frame(const fs::path& folder, const joint::JointModel& model,
   mesh = model.labrum_body;
   mesh.points += frame.labrum_displacement;
   io::write_tets(folder / numbered("labrum", frame.frame), mesh, labrum);
+  maxima.labrum.add(labrum);
 }
 
 /// A comma and the number; an empty cell where it is not one.
@@ -98,7 +126,7 @@ std::string header(const joint::JointResult& result) {
       "centre_of_pressure_z_mm,centre_of_pressure_hour,penetration_mm,contact_force_N,force_on_"
       "bare_bone_N,force_error_"
       "percent,"
-      "reaction_error,elastic_energy_Nmm,least_volume_ratio";
+      "reaction_error,elastic_energy_Nmm,contact_energy_Nmm,work_Nmm,least_volume_ratio";
   for (int h = 0; h < 12; ++h) text += join_text(",strain_", h == 0 ? 12 : h, "_oclock");
   for (const char* region : joint::kRegionNames) text += join_text(",strain_", region);
   if (result.has_labrum) text += ",labrum_clearance_mm";
@@ -121,7 +149,7 @@ std::string contact_cells(const joint::FrameResult& f, const joint::JointResult&
   text += cell(c.centre_hour) + cell(c.penetration) + cell(f.balance.contact_force.norm()) +
           cell(f.balance.force_on_bone.norm()) + cell(100.0 * f.balance.force_error) +
           cell(f.balance.reaction_error) + cell(f.balance.elastic_energy) +
-          cell(f.crush.least_volume_ratio);
+          cell(f.balance.contact_energy) + cell(f.balance.work) + cell(f.crush.least_volume_ratio);
   for (const joint::SectorFigures& sector : f.sectors) text += cell(sector.strain);
   for (const joint::SectorFigures& region : f.regions) text += cell(region.strain);
   return text + optional_cells(f, result) + cell(f.residual) + cell(f.iterations) + cell(f.seconds);
@@ -129,7 +157,7 @@ std::string contact_cells(const joint::FrameResult& f, const joint::JointResult&
 
 /// Cells of a frame without a result: as many commas as `contact_cells` has.
 std::string no_contact_cells(const joint::JointResult& result) {
-  return std::string(17 + 12 + joint::kRegionNames.size() + n_optional_cells(result) + 3, ',');
+  return std::string(19 + 12 + joint::kRegionNames.size() + n_optional_cells(result) + 3, ',');
 }
 
 std::string quoted(std::string text) {
@@ -143,9 +171,10 @@ std::string quoted(std::string text) {
 void write_frames(const fs::path& folder, const joint::JointModel& model,
                   const motion::HipMotion& motion, const joint::JointResult& result) {
   std::vector<io::CollectionEntry> entries;
+  BodyMaxima maxima;
   for (const joint::FrameResult& frame : result.frames) {
     if (frame.status != joint::FrameStatus::converged) continue;
-    write_frame(folder / "frames", model, frame);
+    write_frame(folder / "frames", model, frame, maxima);
     const double time = motion.time[static_cast<std::size_t>(frame.frame)];
     for (const char* part : {"acetabular", "femoral"}) {
       entries.push_back({time, std::string(part) + "_cartilage",
@@ -157,6 +186,9 @@ void write_frames(const fs::path& folder, const joint::JointModel& model,
     }
   }
   io::write_collection(folder / "results.pvd", entries);
+  maxima.acetabular.write(folder / "maxima_acetabular.vtu", model.acetabular_cartilage);
+  maxima.femoral.write(folder / "maxima_femoral.vtu", model.femoral_cartilage);
+  maxima.labrum.write(folder / "maxima_labrum.vtu", model.labrum_body);
 }
 
 std::string summary_csv(const motion::HipMotion& motion, const joint::JointResult& result) {

@@ -9,7 +9,8 @@
 namespace coxa::pipeline {
 
 /// frames/acetabular_NNNN.vtu and femoral_NNNN.vtu of every converged frame, deformed, and
-/// results.pvd over them.
+/// results.pvd over them; maxima_acetabular.vtu and maxima_femoral.vtu (and of the labrum): what
+/// each node and element bore at most in any frame, on the undeformed meshes.
 void write_frames(const std::filesystem::path& folder, const joint::JointModel& model,
                   const motion::HipMotion& motion, const joint::JointResult& result);
 

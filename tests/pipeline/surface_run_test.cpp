@@ -3,6 +3,7 @@
 #include <coxa/core/error.h>
 #include <coxa/io/files.h>
 #include <coxa/io/surfaces.h>
+#include <coxa/io/tets.h>
 #include <coxa/pipeline/surface_stage.h>
 #include <gtest/gtest.h>
 
@@ -42,6 +43,25 @@ TEST(SurfaceRun, GoesFromGivenSurfacesToTheReport) {
   EXPECT_EQ(records[3].figures.count("largest_share_of_bare_femur_percent"), 1U);
   EXPECT_TRUE(fs::exists(small / "out" / "report" / "report.html"));
   EXPECT_FALSE(fs::exists(small / "out" / "report" / "slices.png"));
+
+  // the maxima over time are those of the frames' files
+  const fs::path joint = small / "out" / "joint";
+  for (const std::string body : {"acetabular", "femoral"}) {
+    const auto most = io::read_tets_with_fields(joint / ("maxima_" + body + ".vtu")).fields;
+    MatX pressure, stress;
+    for (const auto& entry : fs::directory_iterator(joint / "frames")) {
+      if (entry.path().filename().string().find(body) != 0) continue;
+      const auto frame = io::read_tets_with_fields(entry.path()).fields;
+      const MatX &p = frame.at_points.at("contact_pressure_MPa"),
+                 &s = frame.at_tets.at("von_mises_MPa");
+      pressure = pressure.size() == 0 ? p : MatX(pressure.cwiseMax(p));
+      stress = stress.size() == 0 ? s : MatX(stress.cwiseMax(s));
+    }
+    EXPECT_GT(pressure.maxCoeff(), 0.0);
+    EXPECT_EQ(most.at_points.at("contact_pressure_MPa"), pressure);
+    EXPECT_EQ(most.at_tets.at("von_mises_MPa"), stress);
+    EXPECT_GT(most.at_tets.at("compression").maxCoeff(), 0.0);
+  }
 }
 
 TEST(SurfaceRun, NamesTheStructureThatCannotBeUsed) {
