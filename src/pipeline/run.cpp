@@ -40,8 +40,9 @@ class Run {
       if (!subject_.surfaces.empty())
         return run_surface_stage({subject_.surfaces, subject_.side}, out_ / "segment", reuse,
                                  monitor);
-      const SegmentRequest request{
-          subject_.images, subject_.side, subject_.landmarks, subject_.atlas, {}, subject_.pins};
+      SegmentRequest request{subject_.images, subject_.side, subject_.landmarks, subject_.atlas, {},
+                             subject_.pins};
+      request.options.on_found = options_.on_found;
       return run_segment_stage(request, out_ / "segment", reuse, monitor);
     });
     add(1, [&](Reuse reuse, const Monitor& monitor) {

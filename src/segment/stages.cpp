@@ -13,6 +13,16 @@ std::vector<PreparedImage> smoothed_images(const std::vector<PreparedImage>& ima
   return out;
 }
 
+namespace {
+
+SurfaceSet surfaces_of(const std::vector<Body>& bodies) {
+  SurfaceSet surfaces;
+  for (const Body& body : bodies) surfaces[body.model->name].mesh = surface_mesh(body);
+  return surfaces;
+}
+
+}  // namespace
+
 void update_through(std::vector<Body>& bodies, const std::vector<Resolution>& resolutions,
                     const std::vector<PreparedImage>& images,
                     const std::vector<Obstacles>& obstacles, const std::vector<TriMesh>& hosts,
@@ -23,6 +33,7 @@ void update_through(std::vector<Body>& bodies, const std::vector<Resolution>& re
     const double from = static_cast<double>(r) * share;
     update_bodies(bodies, {smooth, obstacles, hosts}, resolutions[r], options,
                   part_of(monitor, "segment", from, from + share));
+    if (options.on_found) options.on_found(surfaces_of(bodies));
   }
 }
 

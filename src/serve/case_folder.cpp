@@ -147,19 +147,30 @@ Side CaseFolder::side() const {
 }
 
 pipeline::JointRequest CaseFolder::joint_request() const {
+  const fs::path joint_file = folder_ / "joint/joint.toml";
+  if (fs::exists(joint_file)) return pipeline::read_joint_request(joint_file);
   const io::Table subject = io::Table::read(folder_ / "subject.toml");
-  return {pipeline::read_side(subject),           folder_ / "mesh/acetabular_cartilage.vtu",
-          folder_ / "mesh/femoral_cartilage.vtu", folder_ / "segment/hip_bone.vtp",
-          folder_ / "segment/femur.vtp",          folder_ / "motion",
-          pipeline::read_joint_entry(subject)};
+  pipeline::JointRequest request{
+      pipeline::read_side(subject),           folder_ / "mesh/acetabular_cartilage.vtu",
+      folder_ / "mesh/femoral_cartilage.vtu", folder_ / "segment/hip_bone.vtp",
+      folder_ / "segment/femur.vtp",          folder_ / "motion",
+      pipeline::read_joint_entry(subject)};
+  request.labrum = surface_file(kLabrum);
+  return request;
+}
+
+fs::path CaseFolder::surface_file(const std::string& structure) const {
+  const fs::path segmented = folder_ / "segment" / (structure + ".vtp");
+  if (fs::exists(segmented)) return segmented;
+  const fs::path joint_file = folder_ / "joint/joint.toml";
+  if (structure != kLabrum || !fs::exists(joint_file)) return {};
+  return pipeline::read_joint_request(joint_file).labrum;
 }
 
 CaseFolder::Hip CaseFolder::read_hip() const {
   require(has_meshes() && fs::exists(folder_ / "motion/frames.json"),
           "the live examination needs the meshes and the joint centre: run the chain first");
-  const fs::path joint_file = folder_ / "joint/joint.toml";
-  const pipeline::JointRequest request =
-      fs::exists(joint_file) ? pipeline::read_joint_request(joint_file) : joint_request();
+  const pipeline::JointRequest request = joint_request();
   const auto artefacts = pipeline::read_motion_artefacts(request.motion, request.side);
   Hip hip{pipeline::read_joint_model(request, artefacts.frames), {}};
   hip.load = pipeline::joint_load(request, hip.model);
@@ -195,8 +206,7 @@ Json CaseFolder::overview() const {
             {"surfaces", Json::array()},
             {"bodies", Json::array()}};
   for (const char* name : kStructures) {
-    if (fs::exists(folder_ / "segment" / (std::string(name) + ".vtp")))
-      json["surfaces"].push_back(name);
+    if (!surface_file(name).empty()) json["surfaces"].push_back(name);
   }
   if (has_meshes()) json["bodies"] = {"acetabular", "femoral"};
   const CaseInput in = input();
@@ -224,7 +234,10 @@ Json CaseFolder::overview() const {
 std::string CaseFolder::surface(const std::string& structure) const {
   const bool known = std::count(std::begin(kStructures), std::end(kStructures), structure) > 0;
   require(known, "there is no structure \"", structure, "\"");
-  const Surface surface = io::read_surface_with_fields(folder_ / "segment" / (structure + ".vtp"));
+  const fs::path file = surface_file(structure);
+  if (file.empty())
+    fail(coxa::ErrorCode::bad_file, "there is no surface of the ", structure, " yet");
+  const Surface surface = io::read_surface_with_fields(file);
   Bundle bundle(Json{{"name", structure}}.dump());
   bundle.add("positions", surface.mesh.points);
   bundle.add("triangles", surface.mesh.triangles);

@@ -14,8 +14,9 @@
 
 namespace coxa::serve {
 
+inline constexpr const char* kLabrum = "acetabular_labrum";
 inline constexpr const char* kStructures[] = {"hip_bone", "femur", "acetabular_cartilage",
-                                              "femoral_cartilage"};
+                                              "femoral_cartilage", kLabrum};
 
 /// Whether a name is one of an image in one file.
 bool is_image(const std::filesystem::path& path);
@@ -70,6 +71,9 @@ class CaseFolder {
 
  private:
   pipeline::JointRequest joint_request() const;
+  /// Where a structure's surface lies: among the segmented ones, the labrum else where the joint
+  /// file names it; empty: nowhere.
+  std::filesystem::path surface_file(const std::string& structure) const;
   Side side() const;
   /// The socket's clock face, and the angles at which the hip was imaged.
   nlohmann::json joint_frames() const;

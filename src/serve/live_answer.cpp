@@ -9,7 +9,12 @@ namespace {
 using Json = nlohmann::json;
 using Values = std::map<std::string, VecX>;
 
-Json number_or_null(double value) { return value == value ? Json(value) : Json(nullptr); }
+Json json_of(const std::optional<joint::LiveHip::NearPlace>& near) {
+  if (!near) return nullptr;
+  const Vec3& p = near->point;
+  return {
+      {"clearance_mm", near->clearance}, {"place", {p.x(), p.y(), p.z()}}, {"hour", near->hour}};
+}
 
 /// True where a field comes of stress or strain; an empty one stands for all.
 bool needs_elements(const std::string& field) {
@@ -38,7 +43,8 @@ double largest_move(const Points& a, const Points& b) {
 
 }  // namespace
 
-Json live_meta(const joint::FrameResult& frame, const motion::HipAngles& angles) {
+Json live_meta(const joint::LiveHip::Step& step, const motion::HipAngles& angles) {
+  const joint::FrameResult& frame = step.frame;
   const joint::ContactFigures& contact = frame.contact;
   Json meta{{"status", joint::name_of(frame.status)},
             {"reason", frame.reason},
@@ -46,7 +52,8 @@ Json live_meta(const joint::FrameResult& frame, const motion::HipAngles& angles)
             {"flexion_deg", degrees(angles.flexion)},
             {"adduction_deg", degrees(angles.adduction)},
             {"internal_rotation_deg", degrees(angles.internal_rotation)},
-            {"bone_clearance_mm", number_or_null(frame.bone_clearance)},
+            {"bone", json_of(step.bone)},
+            {"labrum", json_of(step.labrum)},
             {"residual", frame.residual},
             {"iterations", frame.iterations}};
   if (frame.status == joint::FrameStatus::converged) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <coxa/joint/joint_model.h>
+#include <coxa/joint/live.h>
 #include <coxa/joint/simulate.h>
 #include <coxa/motion/hip_motion.h>
 #include <coxa/serve/bundle.h>
@@ -17,7 +18,7 @@ struct LiveSurfaces {
 };
 
 /// Status, pose and figures of a live state, for the browser.
-nlohmann::json live_meta(const joint::FrameResult& frame, const motion::HipAngles& angles);
+nlohmann::json live_meta(const joint::LiveHip::Step& step, const motion::HipAngles& angles);
 
 /// How far a step was off, beside the exact state at the same pose.
 nlohmann::json live_error(const joint::FrameResult& exact, const joint::FrameResult& step);

@@ -57,7 +57,7 @@ std::string LiveRoom::Guest::packed(const Question& question, const joint::LiveH
                                     double solver_ms) {
   const auto start = Clock::now();
   const joint::FrameResult& frame = step.frame;
-  Json meta = live_meta(frame, hip->angles());
+  Json meta = live_meta(step, hip->angles());
   meta["type"] = question.exact ? "settled" : "step";
   meta["number"] = question.number;
   meta["arrived"] = step.arrived;

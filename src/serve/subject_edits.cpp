@@ -141,7 +141,9 @@ Json store_movement(const CaseFolder& folder, const Json& wanted) {
   return {{"file", file.generic_string()}};
 }
 
-std::function<void(const Monitor&)> job_body(const CaseFolder& folder, const Json& job) {
+std::function<void(const Monitor&)> job_body(
+    const CaseFolder& folder, const Json& job,
+    const std::function<void(const SurfaceSet&)>& on_found) {
   const std::string name = job.at("job").get<std::string>();
   const CaseInput in = folder.input();
   const fs::path landmarks = folder.landmarks_file(), pins = folder.pins_file(),
@@ -150,16 +152,17 @@ std::function<void(const Monitor&)> job_body(const CaseFolder& folder, const Jso
   require(!in.images.empty(), in.fault);
   if (name == "run") {
     require(in.subject.has_value(), "the whole chain needs a subject.toml with a movement");
-    return [subject = *in.subject, landmarks, pins, out](const Monitor& monitor) mutable {
+    return [subject = *in.subject, landmarks, pins, out, on_found](const Monitor& monitor) mutable {
       if (!landmarks.empty()) subject.landmarks = landmarks;
       subject.pins = pins;
-      pipeline::run_subject(subject, out, {}, monitor);
+      pipeline::run_subject(subject, out, {.from = std::nullopt, .on_found = on_found}, monitor);
     };
   }
   pipeline::SegmentRequest request;
   request.images = in.images;
   request.landmarks = landmarks;
   request.pins = pins;
+  request.options.on_found = on_found;
   request.atlas = in.subject ? in.subject->atlas : pipeline::shipped_data("atlas/hip.coxa-atlas");
   if (in.side) {
     request.side = *in.side;

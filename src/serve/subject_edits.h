@@ -33,6 +33,8 @@ nlohmann::json store_movement(const CaseFolder& folder, const nlohmann::json& wa
 /// What the job {"job": "segment", "side"} or {"job": "run"} does; landmarks and pins
 /// are the folder's.
 /// @throws Error bad_input if it cannot be done on this folder
-std::function<void(const Monitor&)> job_body(const CaseFolder& folder, const nlohmann::json& job);
+std::function<void(const Monitor&)> job_body(
+    const CaseFolder& folder, const nlohmann::json& job,
+    const std::function<void(const SurfaceSet&)>& on_found);
 
 }  // namespace coxa::serve

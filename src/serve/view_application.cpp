@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "case_folder.h"
+#include "found_surfaces.h"
 #include "job_runner.h"
 #include "live_room.h"
 #include "subject_edits.h"
@@ -76,6 +77,7 @@ struct ViewApplication::Impl {
   std::optional<CaseFolder> other;  ///< a second result, to compare with; only read
   fs::path web_root;
   Uploads uploads{folder};
+  FoundSurfaces found;
   Server* server = nullptr;
   LiveRoom live;
   JobRunner jobs;
@@ -125,6 +127,10 @@ Response ViewApplication::Impl::read(const Request& request) {
   if (path == "/api/landmarks") return json_response(stored_landmarks(folder));
   if (path == "/api/pins") return json_response(stored_pins(folder));
   if (path == "/api/job") return json_response(jobs.state());
+  if (path == "/api/found") {
+    const auto bytes = found.bundle(asked("name"));
+    return bytes ? bundle_response(*bytes) : error_response(404, "nothing of that is found yet");
+  }
   if (path.starts_with("/api/")) return error_response(404, "there is no such request");
   if (path.starts_with("/files/"))
     return file_response(folder.folder(), std::string_view(path).substr(7), true);
@@ -159,7 +165,17 @@ Response ViewApplication::Impl::write(const Request& request) {
 
 void ViewApplication::Impl::start_job(ClientId client, const Json& json) {
   const std::string name = json.at("job").get<std::string>();
-  const std::string refused = jobs.start(name, job_body(folder, json));
+  const auto show = [this](const SurfaceSet& surfaces) {
+    found.set(surfaces);
+    Json names = Json::array();
+    for (const auto& [structure, surface] : surfaces) names.push_back(structure);
+    tell_all({{"type", "found"}, {"names", names}});
+  };
+  const auto body = job_body(folder, json, show);
+  const std::string refused = jobs.start(name, [this, body](const Monitor& monitor) {
+    found.clear();
+    body(monitor);
+  });
   if (!refused.empty()) tell(client, {{"type", "error"}, {"text", refused}});
 }
 

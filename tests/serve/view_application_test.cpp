@@ -2,6 +2,7 @@
 #include <coxa/io/landmarks.h>
 #include <coxa/io/movement_files.h>
 
+#include "../../src/serve/found_surfaces.h"
 #include "serve/viewing.h"
 
 namespace coxa::serve {
@@ -48,6 +49,39 @@ TEST_F(Viewing, SaysWhatTheFolderHolds) {
   EXPECT_EQ(json["image"], "t1.nii.gz");
   EXPECT_EQ(json["live"], false);
   EXPECT_FALSE(json.contains("summary"));
+}
+TEST_F(Viewing, HoldsALabrumWhereTheFolderOrItsJointFileHasOne) {
+  EXPECT_NE(http->status("/api/surface?name=acetabular_labrum"), 200);
+  const auto femur = folder.path / "segment/femur.vtp", other = folder.path / "labrum.vtp";
+  std::filesystem::copy(femur, other);
+  for (const char* name : {"mesh/a.vtu", "mesh/f.vtu", "motion/x"})
+    io::write_bytes(folder.path / name, "");
+  io::write_bytes(folder.path / "joint/joint.toml",
+                  "side = \"left\"\nacetabular_cartilage = \"../mesh/a.vtu\"\n"
+                  "femoral_cartilage = \"../mesh/f.vtu\"\nmotion = \"../motion\"\n"
+                  "acetabular_labrum = \"../labrum.vtp\"\n");
+  EXPECT_EQ(get("/api/case")["surfaces"], Json::array({"femur", "acetabular_labrum"}));
+  EXPECT_EQ(http->get("/api/surface?name=acetabular_labrum").body().substr(0, 4), "CXB1");
+  std::filesystem::remove_all(folder.path / "joint");
+  std::filesystem::rename(other, folder.path / "segment/acetabular_labrum.vtp");
+  EXPECT_EQ(get("/api/case")["surfaces"], Json::array({"femur", "acetabular_labrum"}));
+}
+TEST_F(Viewing, HasFoundNothingBeforeASegmentationRuns) {
+  EXPECT_EQ(http->status("/api/found?name=femur"), 404);
+}
+TEST(FoundSurfaces, KeepWhatWasFoundLastOfEachStructure) {
+  FoundSurfaces found;
+  SurfaceSet surfaces;
+  surfaces["femur"].mesh = {Points::Zero(3, 3), (Triangles(1, 3) << 0, 1, 2).finished()};
+  found.set(surfaces);
+  const std::string first = found.bundle("femur").value();
+  surfaces["femur"].mesh.points(0, 0) = 1.0;
+  surfaces["hip_bone"] = surfaces["femur"];
+  found.set(surfaces);
+  EXPECT_NE(found.bundle("femur").value(), first);
+  EXPECT_TRUE(found.bundle("hip_bone").has_value());
+  found.clear();
+  EXPECT_FALSE(found.bundle("femur").has_value());
 }
 TEST_F(Viewing, SendsSurfaceAndImageAsBundles) {
   EXPECT_EQ(http->get("/api/surface?name=femur").body().substr(0, 4), "CXB1");

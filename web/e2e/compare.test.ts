@@ -1,23 +1,11 @@
-import type { Browser, Page } from "playwright-core";
-import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { launch, open, picture, prepareCase, prepareOther, seriousFaults, serve, type Served } from "./setup";
+import { describe, expect, test } from "vitest";
+import { browser, faults, page, server, session, show } from "./session";
+import { open, picture, prepareOther, seriousFaults } from "./setup";
 
-let server: Served;
-let browser: Browser;
-let page: Page;
-let faults: string[];
-
-beforeAll(async () => {
-  const other = await prepareOther();
-  server = await serve(await prepareCase(), 0, ["--compare", other]);
-  browser = await launch();
-  ({ page, faults } = await open(browser, server.url));
+session(async (finished) => {
+  await show(finished, ["--compare", await prepareOther()]);
   await page.click("#tab-compare");
   await page.waitForFunction(() => document.body.dataset["bothLoaded"] === "yes", null, { timeout: 60_000 });
-});
-afterAll(async () => {
-  await browser?.close();
-  await server?.stop();
 });
 
 const frames = async (): Promise<string> => (await page.getAttribute("#time", "data-frame")) ?? "";

@@ -1,25 +1,12 @@
 import { readFileSync, rmSync } from "node:fs";
 import { resolve } from "node:path";
-import type { Browser, Page } from "playwright-core";
-import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { launch, open, picture, prepareCase, seriousFaults, serve, type Served } from "./setup";
+import { describe, expect, test } from "vitest";
+import { browser, faults, folder, page, server, serveAgain, session, show } from "./session";
+import { open, picture, seriousFaults } from "./setup";
 
-let folder: string;
-let server: Served;
-let browser: Browser;
-let page: Page;
-let faults: string[];
-
-beforeAll(async () => {
-  folder = await prepareCase();
-  server = await serve(folder);
-  browser = await launch();
-  ({ page, faults } = await open(browser, server.url));
+session(async (finished) => {
+  await show(finished);
   await page.click("#tab-exam");
-});
-afterAll(async () => {
-  await browser?.close();
-  await server?.stop();
 });
 
 const verdict = "#side p[data-status]";
@@ -81,10 +68,9 @@ describe("the live examination", () => {
     await expect.poll(async () => Math.abs((await flexion()) - end), { timeout: 60_000 }).toBeLessThan(0.1);
   });
   test("a lost connection is shown, and the examination goes on when the server is back", async () => {
-    const port = server.port;
     await server.stop();
     await expect.poll(() => page.innerText("#connection")).toContain("lost");
-    server = await serve(folder, port);
+    await serveAgain();
     await expect.poll(() => page.innerText("#connection"), { timeout: 15_000 }).toBe("connected");
     const before = await flexion();
     await slide("flexion_deg", Math.round(before) + 3);

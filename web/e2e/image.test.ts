@@ -1,26 +1,10 @@
 import { existsSync, readFileSync } from "node:fs";
 import { resolve } from "node:path";
-import type { Browser, Page } from "playwright-core";
-import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { beginSubject, launch, open, picture, prepareCase, seriousFaults, serve, type Served } from "./setup";
+import { describe, expect, test } from "vitest";
+import { browser, faults, folder, page, server, session, show } from "./session";
+import { beginSubject, open, picture, seriousFaults } from "./setup";
 
-let folder: string;
-let server: Served;
-let browser: Browser;
-let page: Page;
-let faults: string[];
-
-beforeAll(async () => {
-  await prepareCase();
-  folder = beginSubject("begun", true);
-  server = await serve(folder);
-  browser = await launch();
-  ({ page, faults } = await open(browser, server.url));
-});
-afterAll(async () => {
-  await browser?.close();
-  await server?.stop();
-});
+session(() => show(beginSubject("begun", true)));
 
 interface Markup {
   markups: { controlPoints: { label: string; position: number[] }[] }[];
@@ -136,8 +120,13 @@ describe("from an MRI", () => {
     await page.click("[data-testid=segment]");
     await page.waitForSelector("section[data-state=running]");
     await expect.poll(() => page.innerText("#side section p"), { timeout: 60_000 }).toMatch(/\d+ %.*so far/);
+    // long before the end, the surfaces as far as they are found, in slices and 3D
+    await page.waitForFunction(() => document.body.dataset["found"]?.includes("femur"), null, { timeout: 600_000 });
+    expect(existsSync(resolve(folder, "segment"))).toBe(false);
+    await page.waitForTimeout(500);
+    await page.screenshot({ path: picture("segmenting_1280_light") });
     // the page comes back by itself with the surfaces
-    await page.waitForFunction(() => document.querySelectorAll("[data-layer]").length === 4, null, { timeout: 600_000 });
+    await page.waitForFunction(() => document.querySelectorAll("[data-layer]").length >= 4, null, { timeout: 600_000 });
     expect(existsSync(resolve(folder, "segment/femur.vtp"))).toBe(true);
     await page.click("#tab-image");
     await page.waitForSelector("#slices canvas");

@@ -1,30 +1,18 @@
 import { existsSync } from "node:fs";
 import { resolve } from "node:path";
-import type { Browser, Page } from "playwright-core";
-import { afterAll, beforeAll, describe, expect, test } from "vitest";
+import { describe, expect, test } from "vitest";
 import { decodeBundle, floats, triangles } from "../src/core/bundle";
 import type { Vec3 } from "../src/core/case";
 import { distanceTo } from "./distance";
-import { beginSubject, launch, open, picture, prepareCase, seriousFaults, serve, takeSegmentation, type Served } from "./setup";
+import { browser, folder, page, server, session, show } from "./session";
+import { beginSubject, open, picture, seriousFaults, takeSegmentation } from "./setup";
 
-let folder: string;
-let server: Served;
-let browser: Browser;
-let page: Page;
-
-beforeAll(async () => {
-  await prepareCase();
-  folder = beginSubject("pinned", true);
+session(async () => {
+  const folder = beginSubject("pinned", true);
   takeSegmentation(folder);
-  server = await serve(folder);
-  browser = await launch();
-  ({ page } = await open(browser, server.url));
+  await show(folder);
   await page.click("#tab-image");
   await page.waitForSelector("#slices canvas");
-});
-afterAll(async () => {
-  await browser?.close();
-  await server?.stop();
 });
 
 const focus = async (): Promise<number[]> => ((await page.getAttribute("#slices", "data-focus")) ?? "").split(" ").map(Number);

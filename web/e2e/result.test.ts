@@ -1,23 +1,10 @@
 import { copyFileSync, readFileSync, statSync } from "node:fs";
-import type { Browser, Page } from "playwright-core";
-import { afterAll, beforeAll, beforeEach, describe, expect, test } from "vitest";
+import { beforeEach, describe, expect, test } from "vitest";
 import { chunksOf } from "../src/export/apng";
-import { launch, open, picture, prepareCase, seriousFaults, serve, type Served } from "./setup";
+import { browser, faults, page, server, session, show } from "./session";
+import { open, picture, seriousFaults } from "./setup";
 
-let server: Served;
-let browser: Browser;
-let page: Page;
-let faults: string[];
-
-beforeAll(async () => {
-  server = await serve(await prepareCase());
-  browser = await launch();
-  ({ page, faults } = await open(browser, server.url));
-});
-afterAll(async () => {
-  await browser?.close();
-  await server?.stop();
-});
+session((finished) => show(finished));
 
 const frame = async (): Promise<string> => (await page.getAttribute("#time", "data-frame")) ?? "";
 const caption = (): Promise<string> => page.innerText(".colour-bar figcaption");

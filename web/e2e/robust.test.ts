@@ -1,25 +1,10 @@
 import { existsSync, readdirSync, statSync } from "node:fs";
 import { resolve } from "node:path";
-import type { Browser, Page } from "playwright-core";
-import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { copyCase, launch, open, picture, prepareCase, serve, type Served } from "./setup";
+import { describe, expect, test } from "vitest";
+import { folder, page, server, serveAgain, session, show } from "./session";
+import { copyCase, picture } from "./setup";
 
-let server: Served;
-let browser: Browser;
-let page: Page;
-let folder: string;
-
-beforeAll(async () => {
-  await prepareCase();
-  folder = copyCase("killed", ["joint", "report"]);
-  server = await serve(folder);
-  browser = await launch();
-  ({ page } = await open(browser, server.url));
-});
-afterAll(async () => {
-  await browser?.close();
-  await server?.stop();
-});
+session(() => show(copyCase("killed", ["joint", "report"])));
 
 describe("a server that is killed in the middle of a run", () => {
   test("leaves the finished stages and nothing half done", async () => {
@@ -34,7 +19,7 @@ describe("a server that is killed in the middle of a run", () => {
   });
   test("goes on when it is started again, keeping what was finished", async () => {
     const meshed = statSync(resolve(folder, "mesh/mesh.json")).mtimeMs;
-    server = await serve(folder, server.port);
+    await serveAgain();
     await expect.poll(() => page.innerText("#connection"), { timeout: 20_000 }).toBe("connected");
     await page.click("text=Run the whole chain");
     await expect.poll(() => existsSync(resolve(folder, "report/report.html")), { timeout: 200_000 }).toBe(true);

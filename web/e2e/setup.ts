@@ -10,7 +10,7 @@ export const coxa = process.env["COXA_BINARY"] ?? resolve(root, "build/release/c
 export const folder = process.env["COXA_E2E_DIR"] ?? resolve(root, "build/web-e2e");
 
 /** Runs coxa to its end. Not the synchronous way: vitest gives up on a worker that is silent for a minute. */
-function run(...words: string[]): Promise<void> {
+export function runCoxa(...words: string[]): Promise<void> {
   return new Promise((done, failed) => {
     const child = spawn(coxa, [...words, "--quiet"], { stdio: "inherit" });
     child.on("error", failed);
@@ -23,7 +23,7 @@ export async function prepareCase(): Promise<string> {
   const patient = resolve(folder, "patient");
   if (!existsSync(resolve(patient, "subject.toml"))) {
     mkdirSync(folder, { recursive: true });
-    await run("phantom", "--seed", "3", "--voxel", "1.5", "--out", patient);
+    await runCoxa("phantom", "--seed", "3", "--voxel", "1.5", "--out", patient);
     const file = resolve(patient, "subject.toml");
     const text = readFileSync(file, "utf8")
       .replace(/frames = .*/, "frames = 4")
@@ -32,7 +32,7 @@ export async function prepareCase(): Promise<string> {
     writeFileSync(file, text);
   }
   const result = resolve(folder, "result");
-  await run("run", resolve(patient, "subject.toml"), "--out", result, "--resume");
+  await runCoxa("run", resolve(patient, "subject.toml"), "--out", result, "--resume");
   for (const left of ["landmarks.mrk.json", "movements"]) rmSync(resolve(result, left), { recursive: true, force: true });
   return result;
 }
@@ -47,7 +47,7 @@ export async function prepareOther(): Promise<string> {
     writeFileSync(subject, /force_N = .*/.test(text) ? text.replace(/force_N = .*/, "force_N = 1000") : `${text}\n[joint]\nforce_N = 1000\n`);
   }
   if (!existsSync(target)) cpSync(first, target, { recursive: true });
-  await run("run", subject, "--out", target, "--resume");
+  await runCoxa("run", subject, "--out", target, "--resume");
   return target;
 }
 

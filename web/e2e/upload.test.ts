@@ -1,32 +1,18 @@
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { resolve } from "node:path";
-import type { Browser, Page } from "playwright-core";
-import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { emptyFolder, folder as root, launch, open, picture, prepareCase, seriousFaults, serve, type Served } from "./setup";
+import { describe, expect, test } from "vitest";
+import { folder, page, session, show } from "./session";
+import { emptyFolder, folder as root, picture, seriousFaults } from "./setup";
 
 /** Real slices of a pelvis, where the shared data lie beside the source. */
 const dicom = resolve(new URL(".", import.meta.url).pathname, "../../../shared/data/mri/prostatex0001_dicom/6.000000-t2tsetra-76610");
 const image = resolve(root, "patient/image.nii.gz");
-let server: Served;
-let browser: Browser;
-let page: Page;
-let folder: string;
 
 async function begin(name: string): Promise<void> {
-  await server?.stop();
-  folder = emptyFolder(name);
-  server = await serve(folder);
-  ({ page } = await open(browser, server.url));
+  await show(emptyFolder(name));
   await page.waitForSelector(".upload");
 }
-beforeAll(async () => {
-  await prepareCase();
-  browser = await launch();
-});
-afterAll(async () => {
-  await browser?.close();
-  await server?.stop();
-});
+session(() => Promise.resolve());
 
 describe("a subject begins with an image from the browser", () => {
   test("an empty folder asks for one; what is none is refused, and leaves nothing", async () => {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <coxa/core/monitor.h>
+#include <coxa/mesh/surface_set.h>
 #include <coxa/pipeline/stage.h>
 #include <coxa/pipeline/subject.h>
 
@@ -19,6 +20,7 @@ struct RunOptions {
   std::optional<std::string>
       from;  ///< run this stage and all after it again; none: what has changed
   std::function<void(const Record&)> on_stage = {};  ///< called with the record of each stage done
+  std::function<void(const SurfaceSet&)> on_found = {};  ///< as of SegmentOptions
 };
 
 /// The whole chain of one subject into `out`: a folder per stage, manifest.json, log.txt and a copy

@@ -5,6 +5,8 @@
 #include <coxa/mesh/surface_set.h>
 #include <coxa/shape/atlas.h>
 
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +41,8 @@ struct SegmentOptions {
   std::optional<std::string> contrast =
       {};                        ///< the atlas' profiles to use; none: the best fitting of them
   double minimum_quality = 0.4;  ///< in [0, 1]: below it the result is refused with below_quality
+  /// Called now and then with the surfaces as far as they are found; changes nothing.
+  std::function<void(const SurfaceSet&)> on_found = {};
 };
 
 /// How well one structure was found.

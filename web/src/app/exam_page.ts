@@ -3,6 +3,7 @@ import { button, labelled, make, range, say } from "../core/dom";
 import { shortNumber } from "../core/numbers";
 import type { ToWorker } from "../live/connection";
 import type { Answer, Pose } from "../live/live_client";
+import { hitOf, hourText, nearText, type NearPlace } from "../live/near_places";
 import { Recorder } from "../live/recorder";
 import type { HipModel } from "../scene/hip_model";
 import type { Viewer } from "../scene/viewer";
@@ -17,6 +18,9 @@ const kAxes: { key: keyof Pose; label: string; min: number; max: number }[] = [
 const kRest: Pose = { flexion_deg: 0, adduction_deg: 0, internal_rotation_deg: 0 };
 const kDegreesPerPixel = 0.25;
 const kTellEvery = 150; // ms: nobody reads numbers faster
+
+type Row = [name: string, value: number | string, unit: string];
+const near = (answer: Answer, what: "bone" | "labrum"): NearPlace | null => (answer.bundle.meta[what] as NearPlace | null | undefined) ?? null;
 
 /** The live examination: the leg led by sliders or the mouse, the real solver answering. */
 export class ExamPage {
@@ -47,6 +51,7 @@ export class ExamPage {
     private readonly probe: Probe,
     start: Pose | undefined, // at which the hip was imaged: where the server's hip begins
     private readonly ask: (message: ToWorker) => void,
+    private readonly hasLabrum: boolean,
   ) {
     this.wanted = { ...(start ?? kRest) };
     this.panel.append(make("h2", {}, "Lead the leg"), ...kAxes.map((axis) => this.slider(axis)), this.buttons(), this.dragSwitch(), ...this.recording());
@@ -64,6 +69,7 @@ export class ExamPage {
   leave(): void {
     this.viewer.onDrawn = null;
     this.stopReplay();
+    this.viewer.showMarker(null, "hit");
     this.ask({ kind: "leave" });
   }
 
@@ -223,6 +229,7 @@ export class ExamPage {
       this.colours.apply();
       this.probe.refresh();
     }
+    this.viewer.showMarker(hitOf(near(answer, "bone"), near(answer, "labrum"))?.place ?? null, "hit");
     if (this.recorder.recording) this.describeRecord();
     const javascript = performance.now() - start;
     this.noteTimes(answer, javascript, waiting);
@@ -246,13 +253,15 @@ export class ExamPage {
     const meta = answer.bundle.meta as Record<string, number | null>;
     const number = (key: string): number => meta[key] ?? NaN;
     const { flexion_deg, adduction_deg, internal_rotation_deg } = answer.pose;
+    const [bone, labrum] = [near(answer, "bone"), near(answer, "labrum")];
     const reached = `flexion ${flexion_deg.toFixed(1)}°, adduction ${adduction_deg.toFixed(1)}°, internal rotation ${internal_rotation_deg.toFixed(1)}°`;
     const verdicts = {
       converged: `Equilibrium at ${reached}.`,
       failed: `No equilibrium found on the way; the leg stays at ${reached}. ${answer.reason}`,
-      beyond_bony_limit: `The bones meet: the leg stays at ${reached}. ${answer.reason}`,
+      beyond_bony_limit: `The bones meet${bone ? ` at ${hourText(bone.hour)} o'clock` : ""}: the leg stays at ${reached}. ${answer.reason}`,
     };
-    this.verdict.textContent = verdicts[answer.status];
+    const onLabrum = labrum && labrum.clearance_mm < 0 ? ` The femur is ${shortNumber(-labrum.clearance_mm)} mm into the labrum at ${hourText(labrum.hour)} o'clock.` : "";
+    this.verdict.textContent = verdicts[answer.status] + onLabrum;
     this.verdict.classList.toggle("bad", answer.status !== "converged");
     this.verdict.dataset["status"] = answer.status;
     this.verdict.dataset["type"] = answer.type;
@@ -261,7 +270,8 @@ export class ExamPage {
         ["Peak pressure (99th percentile)", number("peak_pressure_p99_MPa"), "MPa"],
         ["Mean pressure", number("mean_pressure_MPa"), "MPa"],
         ["Contact area", number("contact_area_mm2"), "mm²"],
-        ["Least distance of the bones", number("bone_clearance_mm"), "mm"],
+        ["Femur to hip bone", nearText(bone), ""],
+        ...(this.hasLabrum ? [["Femur to labrum", nearText(labrum), ""] as Row] : []),
         ["Overlap left", number("penetration_mm"), "mm"],
         ["Force left, of the joint force", 100 * number("residual"), "%"],
       ]);
@@ -291,9 +301,9 @@ export class ExamPage {
     this.exactness.dataset["settled"] = "yes";
   }
 
-  private rows(body: HTMLElement, rows: [string, number, string][]): void {
+  private rows(body: HTMLElement, rows: Row[]): void {
     body.replaceChildren(
-      ...rows.map(([name, value, unit]) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, `${shortNumber(value)} ${unit}`))),
+      ...rows.map(([name, value, unit]) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, typeof value === "string" ? value : `${shortNumber(value)} ${unit}`))),
     );
   }
 }

@@ -36,6 +36,8 @@ class App {
   private sliceControls: SliceControls | null = null;
   private volume: Promise<Volume> | null = null;
   private readonly server: Connection;
+  private foundNext: string[] = [];
+  private fetchingFound = false;
   private readonly tabs = new Map<PageName, HTMLButtonElement>();
 
   constructor(private readonly info: Case) {
@@ -44,7 +46,7 @@ class App {
     this.colours = new FieldChoice(info, this.hip, () => this.frames.loaded(), () => this.recolour());
     this.probe = new Probe(this.viewer, this.hip, info);
     this.result = new ResultPage(info, this.viewer, this.hip, this.frames, this.colours, this.probe);
-    this.exam = new ExamPage(this.viewer, this.hip, this.colours, this.probe, info.image_pose, (message) => this.server.post(message));
+    this.exam = new ExamPage(this.viewer, this.hip, this.colours, this.probe, info.image_pose, (message) => this.server.post(message), info.surfaces.includes("acetabular_labrum"));
     this.image = new ImagePage(info, this.viewer, this.hip, () => this.readVolume(), send);
     this.image.onWindow = (window) => this.sliceControls?.setWindow(window);
     this.compare = new ComparePage(info, this.viewer, this.hip, this.frames, this.colours);
@@ -125,6 +127,7 @@ class App {
     byId("compare3d").hidden = page !== "compare";
     byId("time").hidden = (page !== "result" && page !== "compare") || this.frames.count === 0;
     this.viewer.showMarker(null);
+    this.viewer.showMarker(null, "hit");
     this.probe.clear();
     if (page === "result") {
       this.result.time?.mount();
@@ -173,6 +176,23 @@ class App {
     if (open && this.page === "exam") this.server.post({ kind: "reconnect" });
   }
 
+  /** Surfaces that a segmentation under way has found so far; what comes while they are fetched is asked for after. */
+  private async showFound(names: string[]): Promise<void> {
+    this.foundNext = names;
+    if (this.fetchingFound) return;
+    this.fetchingFound = true;
+    while (this.foundNext.length > 0) {
+      const wanted = this.foundNext;
+      this.foundNext = [];
+      const first = this.hip.viewer.layers.size === 0;
+      for (const name of wanted) await api.found(name).then((bundle) => this.hip.showFound(name, bundle)).catch(() => undefined); // a new run has begun
+      if (first) this.viewer.look([-0.35, -1, 0.25]);
+      this.image.updateOutlines();
+      document.body.dataset["found"] = [...this.hip.surfaces.keys()].sort().join(" ");
+    }
+    this.fetchingFound = false;
+  }
+
   private hear(message: Record<string, unknown>): void {
     switch (message["type"]) {
       case "hello":
@@ -180,6 +200,9 @@ class App {
         break;
       case "job":
         this.image.jobs.show(message as unknown as Job);
+        break;
+      case "found":
+        void this.showFound(message["names"] as string[]);
         break;
       case "landmarks":
         if (this.image.state) void this.image.landmarks.changedElsewhere(String(message["version"]));

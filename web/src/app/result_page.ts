@@ -3,7 +3,8 @@ import { bandChoices, intervalBand, normalBand, type Band, type BandKind } from 
 import { Curves, type Curve } from "../charts/curves";
 import { floats, triangles } from "../core/bundle";
 import { column, textColumn, type Case, type Table } from "../core/case";
-import { byId, labelled, make, select } from "../core/dom";
+import { button, byId, labelled, make, select } from "../core/dom";
+import { firstContacts, firstContactText, type FirstContact } from "../live/near_places";
 import { ExportPanel } from "../export/export_panel";
 import type { FrameStore } from "../scene/frame_store";
 import type { HipModel } from "../scene/hip_model";
@@ -36,7 +37,7 @@ export class ResultPage {
     this.clock = new ClockMap(info.side ?? "right");
     const summary = info.summary;
     this.time = summary ? new TimeBar(frames.count, (frame) => void this.show(frame), (frame) => this.frameText(summary, frame)) : null;
-    this.panel.append(...this.exports(), ...this.notes());
+    this.panel.append(...this.contacts(), ...this.exports(), ...this.notes());
     if (summary) this.side.append(this.clock.element, this.bandChoice(summary), this.bandSource, this.curves.element);
     else this.side.append(make("p", {}, "No simulation yet: curves and maps appear here when the chain has run."));
     if (summary) this.startCurves(summary);
@@ -57,6 +58,7 @@ export class ResultPage {
     const start = performance.now();
     this.hip.apply(bundle);
     this.refresh();
+    this.viewer.showMarker(this.hitAt(wanted)?.place ?? null, "hit");
     this.lastFrameMs = performance.now() - start;
     byId("time").dataset["frame"] = String(wanted);
     byId("time").dataset["readyMs"] = this.lastFrameMs.toFixed(1);
@@ -123,6 +125,7 @@ export class ResultPage {
         return { label, values: column(summary, name), ...(band ? { band } : {}) };
       });
     this.describeBands();
+    const distances: [string, string][] = [["bone_clearance_mm", "from the hip bone"], ["labrum_clearance_mm", "from the labrum"]];
     this.curves.show(
       time,
       [
@@ -132,9 +135,32 @@ export class ResultPage {
         })),
         { title: "Contact pressure [MPa]", curves: pick([["peak_pressure_p99_MPa", "peak (99th percentile)"], ["mean_pressure_MPa", "mean"]]) },
         { title: "Contact area [mm²]", curves: pick([["contact_area_mm2", "contact area"]]) },
+        { title: "Femur's distance [mm]", curves: pick(distances.filter(([name]) => summary.columns.includes(name))) },
       ],
       textColumn(summary, "status").map((status) => status !== "converged"),
     );
+  }
+
+  /** Whether the femur overlaps the hip bone or the labrum at a frame. */
+  private hits({ what }: FirstContact, frame: number): boolean {
+    const summary = this.info.summary;
+    if (!summary) return false;
+    return (column(summary, what === "bones" ? "bone_clearance_mm" : "labrum_clearance_mm")[frame] ?? NaN) < 0;
+  }
+  private hitAt(frame: number): FirstContact | null {
+    return firstContacts(this.info.stages ?? []).find((contact) => this.hits(contact, frame)) ?? null;
+  }
+
+  /** Where bones and labrum were hit, each with the way to its frame. */
+  private contacts(): HTMLElement[] {
+    const found = firstContacts(this.info.stages ?? []);
+    if (found.length === 0) return [];
+    const entry = (contact: FirstContact): HTMLElement => {
+      const first = Array.from({ length: this.frames.count }, (_, frame) => frame).find((frame) => this.hits(contact, frame));
+      const show = button("Show", () => void this.show(first ?? 0), { "aria-label": `Show the contact with the ${contact.what}` });
+      return make("p", { class: "note", "data-contact": contact.what }, firstContactText(contact), " ", ...(first === undefined ? [] : [show]));
+    };
+    return [make("h2", {}, "Contacts"), ...found.map(entry)];
   }
 
   private exports(): HTMLElement[] {

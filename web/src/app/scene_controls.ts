@@ -122,7 +122,7 @@ export function viewpointButtons(viewers: () => Viewer[], clock: Clock | undefin
         look(clock.axis, ["acetabular_cartilage"], clock.twelve);
       }),
       button("onto the head", () => {
-        show(["hip_bone", "acetabular_cartilage"]);
+        show(["hip_bone", "acetabular_cartilage", "acetabular_labrum"]);
         look(times(-1, clock.axis), ["femoral_cartilage"], clock.twelve);
       }),
     );

@@ -25,6 +25,7 @@ export const structureColours: Record<string, Rgb> = {
   hip_bone: [86, 180, 233],
   femoral_cartilage: [213, 94, 0],
   acetabular_cartilage: [0, 158, 115],
+  acetabular_labrum: [204, 121, 167],
 };
 
 /** Colour at a share in [0, 1], clamped; grey for NaN. */

@@ -72,6 +72,8 @@ export const other = source("of=other&");
 
 export const api = {
   ...source(""),
+  /** A surface as far as the segmentation under way has found it. */
+  found: (name: string) => bundle(`/api/found?name=${encodeURIComponent(name)}`),
   image: () => bundle("/api/image"),
   landmarks: () => json<StoredLandmarks>("/api/landmarks"),
   saveLandmarks: (version: string, landmarks: Landmark[]) =>

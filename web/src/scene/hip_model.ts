@@ -33,6 +33,14 @@ export class HipModel {
     for (const body of meshed) this.addLayer(layerOf(body), this.bodies.get(body));
   }
 
+  /** A surface as a segmentation under way has found it, in place of what was there. */
+  showFound(name: string, bundle: Bundle): void {
+    this.bodies.delete(name.replace("_cartilage", "") as BodyName); // was meshed of an older surface
+    this.surfaces.set(name, bundle);
+    this.addLayer(name, bundle);
+    this.viewer.invalidate();
+  }
+
   clear(): void {
     for (const name of [...this.viewer.layers.keys()]) this.viewer.remove(name);
     this.bodies.clear();

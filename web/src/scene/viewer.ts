@@ -40,6 +40,14 @@ function asksTheDriver(): boolean {
   return /swiftshader|llvmpipe|software/i.test(name);
 }
 
+/** A ball that is seen through everything. */
+function spot(radius: number, color: number): THREE.Mesh {
+  const ball = new THREE.Mesh(new THREE.SphereGeometry(radius, 16, 12), new THREE.MeshBasicMaterial({ color, depthTest: false, transparent: true }));
+  ball.visible = false;
+  ball.renderOrder = 2;
+  return ball;
+}
+
 /** The 3D view: parallel projection, drawn only when something has changed. */
 export class Viewer {
   readonly scene = new THREE.Scene();
@@ -51,7 +59,7 @@ export class Viewer {
   onDrawn: ((milliseconds: number) => void) | null = null;
   /** The eye has moved. */
   onCamera: (() => void) | null = null;
-  private readonly marker = new THREE.Mesh(new THREE.SphereGeometry(1, 16, 12), new THREE.MeshBasicMaterial({ color: 0xd00000, depthTest: false }));
+  private readonly markers = { place: spot(1, 0xd00000), hit: spot(2.5, 0xff00a0) };
   private readonly plane = new THREE.Plane(new THREE.Vector3(0, 0, -1), 0);
   private clipping = false;
   private halfHeight = 80;
@@ -68,9 +76,7 @@ export class Viewer {
     const headlight = new THREE.DirectionalLight(0xffffff, 0.35 * Math.PI);
     headlight.position.set(0.3, 0.5, 1);
     this.camera.add(headlight);
-    this.scene.add(this.camera, new THREE.AmbientLight(0xffffff, 0.68 * Math.PI), this.marker);
-    this.marker.visible = false;
-    this.marker.renderOrder = 2;
+    this.scene.add(this.camera, new THREE.AmbientLight(0xffffff, 0.68 * Math.PI), ...Object.values(this.markers));
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.cameraMoved());
     canvas.addEventListener("keydown", (event) => this.onKey(event));
@@ -143,9 +149,13 @@ export class Viewer {
     this.invalidate();
   }
 
-  showMarker(at: Vec3 | null): void {
-    this.marker.visible = at !== null;
-    if (at) this.marker.position.set(...at);
+  /** Marks the place looked at, or where bones or labrum are hit; null: neither there nor elsewhere. */
+  showMarker(at: Vec3 | null, which: "place" | "hit" = "place"): void {
+    const marker = this.markers[which];
+    if (!at && !marker.visible) return;
+    marker.visible = at !== null;
+    if (at) marker.position.set(...at);
+    this.canvas.dataset[which] = at ? at.map((c) => c.toFixed(1)).join(" ") : "";
     this.invalidate();
   }
 

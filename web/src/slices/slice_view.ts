@@ -98,6 +98,8 @@ export class SliceView {
     return Math.min(this.sliceCount - 1, Math.max(0, Math.round(this.index[this.axes.w])));
   }
 
+  private placed = { sx: 1, sy: 1, x0: 0, y0: 0 }; // the layout as last drawn
+
   /** Pixels per voxel along the picture's sides, and where it begins. */
   private layout(): { sx: number; sy: number; x0: number; y0: number } {
     const { spacing, size } = this.state.volume;
@@ -112,7 +114,7 @@ export class SliceView {
 
   private toScreen(index: ArrayLike<number>, at = 0): [number, number] {
     const { u, v, flipU, flipV } = this.axes;
-    const { sx, sy, x0, y0 } = this.layout();
+    const { sx, sy, x0, y0 } = this.placed;
     const i = index[at + u] ?? 0;
     const j = index[at + v] ?? 0;
     const size = this.state.volume.size;
@@ -135,14 +137,19 @@ export class SliceView {
   private draw(): void {
     const start = performance.now();
     const ratio = window.devicePixelRatio;
-    this.canvas.width = Math.max(1, Math.round(this.element.clientWidth * ratio));
-    this.canvas.height = Math.max(1, Math.round(this.element.clientHeight * ratio));
+    const size = [this.element.clientWidth, this.element.clientHeight].map((side) => Math.max(1, Math.round(side * ratio))) as [number, number];
+    // a canvas of the same size is wiped: another would be memory taken and given back for every slice
+    if (this.canvas.width !== size[0]) this.canvas.width = size[0];
+    if (this.canvas.height !== size[1]) this.canvas.height = size[1];
     const context = this.canvas.getContext("2d");
     if (!context) return;
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.clearRect(0, 0, ...size);
     context.scale(ratio, ratio);
+    this.placed = this.layout();
     const k = this.slice;
     this.renderSlice(k);
-    const { sx, sy, x0, y0 } = this.layout();
+    const { sx, sy, x0, y0 } = this.placed;
     context.drawImage(this.picture, x0, y0, sx * this.picture.width, sy * this.picture.height);
     this.drawOutlines(context, k);
     this.drawCross(context);
