@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kSampleStep = 2.5;  // mm, along the normal
 constexpr double kWindow = 5.0;  // mm, Gaussian weight of a sample by its distance to the border
+// share of the probes that must be in view for a place to count in full
+constexpr double kShareInView = 0.5;
 constexpr double kFlatShare =
     0.03;  // of the intensity range: profiles flatter than that say nothing
-// Share of the probes that must be in view for a place to count in full.
-constexpr double kShareInView = 0.5;
 
 /// The reference at the offsets, smoothed like the image; its ends go on as they are.
 VecX smoothed_at(const VecX& profile, Index n_inside, double step, const VecX& offsets,

@@ -27,6 +27,9 @@ constexpr double kApart = 18.0;
 constexpr double kRefinedRange = 12.0;
 /// rad. Patients lie on the table within about this of the atlas' orientation.
 constexpr double kTurn = 0.26;
+/// mm. So far inside the image lies the joint's centre: an image that cuts the head shows no joint,
+/// and at its border few vertices are in view, which fit by chance.
+constexpr double kInside = 15.0;
 /// Share of the vertices that must be in view for a place to count in full.
 constexpr double kShareInView = 0.5;
 
@@ -53,10 +56,9 @@ std::vector<Candidate> all_candidates(const Volume& volume) {
   for (int a = 0; a < 3; ++a) {
     extent[a] = (volume.size[static_cast<std::size_t>(a)] - 1) * volume.spacing[a];
   }
-  // the joint's centre lies in the image
-  for (double z = 0.5 * kGrid; z < extent.z(); z += kGrid)
-    for (double y = 0.5 * kGrid; y < extent.y(); y += kGrid)
-      for (double x = 0.5 * kGrid; x < extent.x(); x += kGrid) {
+  for (double z = kInside; z <= extent.z() - kInside; z += kGrid)
+    for (double y = kInside; y <= extent.y() - kInside; y += kGrid)
+      for (double x = kInside; x <= extent.x() - kInside; x += kGrid) {
         const Vec3 p = volume.origin + volume.direction * Vec3(x, y, z);
         for (const Mat3& R : turns) candidates.push_back({{1.0, {R, p}}, 0, -kInfinity});
       }
@@ -70,9 +72,10 @@ double size_cost(double scale) {
   return kCost * std::pow(std::log(scale) / kSpread, 2);
 }
 
-void update_score(Candidate& candidate, const PoseScore& score) {
+void update_score(Candidate& candidate, const PoseScore& score, const Volume& volume) {
   candidate.score =
       score.at(candidate.pose).maxCoeff(&candidate.contrast) - size_cost(candidate.pose.scale);
+  if (!in_view(volume, candidate.pose.X.p, kInside)) candidate.score = -kInfinity;
 }
 
 /// The best-scoring candidates that are apart from each other, best first.
@@ -105,8 +108,8 @@ Similarity stepped(const Similarity& pose, int direction, double share) {
 }
 
 /// The nearest best pose, by steps along one direction after the other that grow smaller.
-Candidate improved(Candidate best, const PoseScore& score) {
-  update_score(best, score);
+Candidate improved(Candidate best, const PoseScore& score, const Volume& volume) {
+  update_score(best, score, volume);
   for (const double share : {1.0, 0.5, 0.25}) {
     for (bool better = true; better;) {
       better = false;
@@ -114,7 +117,7 @@ Candidate improved(Candidate best, const PoseScore& score) {
         for (const double sign : {-1.0, 1.0}) {
           Candidate next = best;
           next.pose = stepped(best.pose, direction, sign * share);
-          update_score(next, score);
+          update_score(next, score, volume);
           if (next.score < best.score + 1e-4) continue;
           best = next;
           better = true;
@@ -198,7 +201,8 @@ FoundPose find_pose(const std::vector<const shape::StructureModel*>& bones,
                     const Monitor& monitor) {
   const PoseScore few(bones, images.front(), kSmoothing, kProbes),
       many(bones, images.front(), kSmoothing, kManyProbes);
-  std::vector<Candidate> candidates = all_candidates(images.front().volume);
+  const Volume& volume = images.front().volume;
+  std::vector<Candidate> candidates = all_candidates(volume);
   require(!candidates.empty(), "the image is too small to look for a hip in");
   const auto update_all = [&](const auto& update) {
     parallel_for(static_cast<std::int64_t>(candidates.size()), [&](Index i) {
@@ -206,9 +210,9 @@ FoundPose find_pose(const std::vector<const shape::StructureModel*>& bones,
     });
     monitor.check_cancelled();
   };
-  update_all([&](Candidate& c) { update_score(c, few); });
+  update_all([&](Candidate& c) { update_score(c, few, volume); });
   candidates = best_apart(std::move(candidates), kImproved);
-  update_all([&](Candidate& c) { c = improved(c, many); });
+  update_all([&](Candidate& c) { c = improved(c, many, volume); });
   candidates = best_apart(std::move(candidates), kFitted);
 
   PreparedImage image = images.front();
