@@ -1,6 +1,7 @@
 #include <coxa/core/error.h>
-#include <coxa/pipeline/muscle_names.h>
 #include <coxa/pipeline/segment_stage.h>
+#include <coxa/pipeline/structures.h>
+#include <coxa/pipeline/surface_stage.h>
 
 #include "commands.h"
 
@@ -9,31 +10,37 @@ namespace {
 
 struct SegmentArguments {
   std::vector<std::string> images;
-  std::string series, side, landmarks, structures = "bones,cartilage", atlas, contrast, pins, out;
+  std::string series, side, landmarks, structures = "bones,cartilage", atlas, contrast, pins,
+                                       labels, surfaces, out;
   double landmark_error = segment::SegmentOptions{}.landmark_error, pin_weight = 1.0;
   bool resume = false;
 };
 
-std::vector<std::string> structures_from(const std::string& list) {
-  std::map<std::string, std::vector<std::string>> groups{
-      {"bones", {"femur", "hip_bone"}},
-      {"cartilage", {"femoral_cartilage", "acetabular_cartilage"}},
-      {"muscles", pipeline::muscle_names()}};
-  for (const char* group : {"bones", "cartilage", "muscles"})
-    groups["all"].insert(groups["all"].end(), groups[group].begin(), groups[group].end());
-  std::vector<std::string> names;
-  for (const std::string& word : CLI::detail::split(list, ',')) {
-    const auto group = groups.find(word);
-    if (group == groups.end()) {
-      names.push_back(word);
-    } else {
-      names.insert(names.end(), group->second.begin(), group->second.end());
+/// A hip segmented elsewhere: labrum and ligaments are made on its bones and cartilages.
+pipeline::SurfaceRequest surface_request(const SegmentArguments& arguments) {
+  pipeline::SurfaceRequest request;
+  request.side = arguments.side == "left" ? Side::left : Side::right;
+  request.structures = pipeline::structures_from(arguments.structures);
+  for (const char* name : {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"}) {
+    const std::filesystem::path folder = arguments.surfaces;
+    for (const char* extension : {".ply", ".stl", ".vtp", ".obj"}) {
+      if (!request.surfaces.contains(name) &&
+          std::filesystem::exists(folder / (name + std::string(extension))))
+        request.surfaces[name] = folder / (name + std::string(extension));
     }
+    require(request.surfaces.contains(name), folder.string(), " holds no surface ", name,
+            " (.ply, .stl, .vtp or .obj)");
   }
-  return names;
+  return request;
 }
 
 void run_segment(const SegmentArguments& arguments, Context& context) {
+  if (!arguments.surfaces.empty()) {
+    const auto record = pipeline::run_surface_stage(surface_request(arguments), arguments.out,
+                                                    pipeline::Reuse::never, context.monitor());
+    context.print_result(arguments.out, record);
+    return;
+  }
   pipeline::SegmentRequest request;
   for (const std::string& image : arguments.images) {
     request.images.push_back(
@@ -43,9 +50,10 @@ void run_segment(const SegmentArguments& arguments, Context& context) {
   request.landmarks = arguments.landmarks;
   request.atlas = arguments.atlas.empty() ? pipeline::shipped_data("atlas/hip.coxa-atlas")
                                           : std::filesystem::path(arguments.atlas);
-  request.options.structures = structures_from(arguments.structures);
+  request.options.structures = pipeline::structures_from(arguments.structures);
   request.pins = arguments.pins;
   request.pin_weight = arguments.pin_weight;
+  request.labels = arguments.labels;
   request.options.landmark_error = arguments.landmark_error;
   if (!arguments.contrast.empty()) request.options.contrast = arguments.contrast;
   const auto reuse = arguments.resume ? pipeline::Reuse::if_unchanged : pipeline::Reuse::never;
@@ -58,10 +66,17 @@ void run_segment(const SegmentArguments& arguments, Context& context) {
 void add_segment(CLI::App& app, Context& context) {
   auto* verb = app.add_subcommand("segment", "surfaces of one hip from its MRI");
   auto arguments = std::make_shared<SegmentArguments>();
-  verb->add_option("--image", arguments->images,
+  auto* source = verb->add_option_group("source");
+  source
+      ->add_option("--image", arguments->images,
                    "NIfTI, NRRD, MetaImage or DICOM folder; several of one patient allowed")
-      ->required()
       ->check(CLI::ExistingPath);
+  source
+      ->add_option("--surfaces", arguments->surfaces,
+                   "in place of images: folder of bones and cartilages segmented elsewhere, for "
+                   "labrum and ligaments")
+      ->check(CLI::ExistingDirectory);
+  source->require_option(1);
   verb->add_option("--series", arguments->series, "which series of a DICOM folder");
   verb->add_option("--side", arguments->side, "side of the hip")
       ->required()
@@ -78,8 +93,12 @@ void add_segment(CLI::App& app, Context& context) {
   verb->add_option("--pin-weight", arguments->pin_weight,
                    "how far of the way to its pins a surface goes")
       ->check(CLI::Range(0.0, 1.0));
-  verb->add_option("--structures", arguments->structures,
-                   "bones, cartilage, muscles, all, or names, separated by commas");
+  verb->add_option(
+      "--structures", arguments->structures,
+      "bones, cartilage, muscles, labrum, ligaments, all, or names, separated by commas");
+  verb->add_option("--labels", arguments->labels,
+                   "label map of an earlier result, corrected by hand: surfaces follow it")
+      ->check(CLI::ExistingFile);
   verb->add_option("--contrast", arguments->contrast,
                    "profiles of the atlas to use; the best fitting where not given");
   verb->add_option("--atlas", arguments->atlas, "atlas file; the shipped one where not given")

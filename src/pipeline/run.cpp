@@ -38,11 +38,13 @@ class Run {
     io::write_bytes(out_ / "subject.toml", io::read_bytes(subject_.file));
     add(0, [&](Reuse reuse, const Monitor& monitor) {
       if (!subject_.surfaces.empty())
-        return run_surface_stage({subject_.surfaces, subject_.side}, out_ / "segment", reuse,
-                                 monitor);
+        return run_surface_stage({subject_.surfaces, subject_.side, subject_.structures},
+                                 out_ / "segment", reuse, monitor);
       SegmentRequest request{subject_.images, subject_.side, subject_.landmarks, subject_.atlas, {},
                              subject_.pins};
+      request.labels = subject_.labels;
       request.options.on_found = options_.on_found;
+      if (!subject_.structures.empty()) request.options.structures = subject_.structures;
       return run_segment_stage(request, out_ / "segment", reuse, monitor);
     });
     add(1, [&](Reuse reuse, const Monitor& monitor) {
@@ -65,6 +67,7 @@ class Run {
 
  private:
   JointRequest joint_request() const {
+    const fs::path labrum = out_ / "segment" / "acetabular_labrum.vtp";
     return {subject_.side,
             out_ / "mesh" / "acetabular_cartilage.vtu",
             out_ / "mesh" / "femoral_cartilage.vtu",
@@ -72,7 +75,8 @@ class Run {
             out_ / "segment" / "femur.vtp",
             out_ / "motion",
             subject_.joint,
-            subject_.body_mass};
+            subject_.body_mass,
+            fs::exists(labrum) ? labrum : fs::path()};
   }
 
   template <class Stage>

@@ -10,7 +10,13 @@
 #include <coxa/io/volumes.h>
 #include <coxa/measure/thickness.h>
 #include <coxa/pipeline/label_map.h>
+#include <coxa/pipeline/structures.h>
 #include <coxa/segment/pins.h>
+
+#include <algorithm>
+
+#include "generic_structures.h"
+#include "label_edits.h"
 
 namespace coxa::pipeline {
 namespace fs = std::filesystem;
@@ -80,12 +86,24 @@ Record wanted_record(const SegmentRequest& request) {
   return record;
 }
 
-/// The record of the same with pins.
-Record with_pins(Record record, const SegmentRequest& request) {
+/// The record of the same with corrections by hand.
+Record with_corrections(Record record, const SegmentRequest& request) {
+  if (!request.labels.empty()) record.inputs["labels"] = io::sha256_of_path(request.labels);
   if (request.pins.empty()) return record;
   record.inputs["pins"] = io::sha256_of_path(request.pins);
   record.options["pin_weight"] = request.pin_weight;
   return record;
+}
+
+/// What the image is searched for: generic structures are made afterwards, on bones and cartilages.
+segment::SegmentOptions options_of_search(segment::SegmentOptions options) {
+  auto& names = options.structures;
+  if (generic_among(names).empty()) return options;
+  std::erase_if(names, is_generic);
+  for (const char* needed : kStructures) {
+    if (std::find(names.begin(), names.end(), needed) == names.end()) names.emplace_back(needed);
+  }
+  return options;
 }
 
 void add_figures(const segment::SegmentResult& result, Record& record) {
@@ -131,15 +149,15 @@ SurfaceSet found_in_image(const SegmentRequest& request, const std::vector<Volum
   for (const Volume& image : images) warn_of_thick_slices(image, record, monitor);
   segment::SegmentResult result =
       segment::segment(images, io::read_atlas(request.atlas), request.side, landmarks_of(request),
-                       request.options, monitor);
+                       options_of_search(request.options), monitor);
   add_figures(result, record);
   record.warnings.insert(record.warnings.end(), result.warnings.begin(), result.warnings.end());
   return std::move(result.surfaces);
 }
 
-/// Where an earlier result holds the surfaces without pins, of the same images, landmarks, atlas
-/// and options; empty: nowhere.
-fs::path kept_without_pins(const fs::path& earlier, const Record& wanted, Reuse reuse) {
+/// Where an earlier result holds the surfaces without corrections, of the same images, landmarks,
+/// atlas and options; empty: nowhere.
+fs::path kept_as_found(const fs::path& earlier, const Record& wanted, Reuse reuse) {
   for (const fs::path& place : {earlier, earlier / "found"}) {
     if (reuse == Reuse::if_unchanged && holds_result(place, wanted)) return place;
   }
@@ -149,6 +167,27 @@ fs::path kept_without_pins(const fs::path& earlier, const Record& wanted, Reuse 
 void write_found(const fs::path& found, const SurfaceSet& surfaces, const Record& record) {
   for (const auto& [name, surface] : surfaces) io::write_surface(found / (name + ".vtp"), surface);
   write_record(found / "segment.json", record);
+}
+
+/// Every surface that was found in the image.
+SurfaceSet read_found(const fs::path& folder) {
+  SurfaceSet surfaces;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().stem().string();
+    if (entry.path().extension() != ".vtp" || is_generic(name)) continue;
+    surfaces[name] = io::read_surface_with_fields(entry.path());
+  }
+  if (surfaces.empty()) fail(ErrorCode::bad_file, folder.string(), " holds no surface");
+  return surfaces;
+}
+
+/// Labrum and ligaments, where they are asked for.
+void make_generic(const SegmentRequest& request, SurfaceSet& surfaces, Record& record,
+                  const Monitor& monitor) {
+  const auto& wanted = request.options.structures;
+  if (generic_among(wanted).empty()) return;
+  const shape::Atlas atlas = io::read_atlas(request.atlas);
+  add_generic(surfaces, wanted, request.side, &atlas, record, monitor);
 }
 
 std::vector<segment::Pin> read_pins(const SegmentRequest& request) {
@@ -190,17 +229,18 @@ Record run_segment_stage(const SegmentRequest& request, const fs::path& folder, 
   const auto body = [&](const fs::path& partial, Record& record) {
     const std::vector<segment::Pin> pins = read_pins(request);
     const std::vector<Volume> images = read_images(request, monitor);
-    const fs::path kept = kept_without_pins(folder, as_found, reuse);
+    const fs::path kept = kept_as_found(folder, as_found, reuse);
     Record found = kept.empty() ? as_found : read_record(kept / "segment.json");
     SurfaceSet surfaces = kept.empty() ? found_in_image(request, images, found,
                                                         part_of(monitor, "segment", 0.0, 0.95))
-                                       : read_surfaces(kept);
+                                       : read_found(kept);
     record.figures = found.figures;
     record.warnings = found.warnings;
-    if (!pins.empty()) {
-      write_found(partial / "found", surfaces, found);
-      set_pins(pins, request.options.minimum_gap, surfaces, record, monitor);
-    }
+    if (!pins.empty() || !request.labels.empty()) write_found(partial / "found", surfaces, found);
+    if (!request.labels.empty())
+      follow_labels(request.labels, images.front(), surfaces, record, monitor);
+    if (!pins.empty()) set_pins(pins, request.options.minimum_gap, surfaces, record, monitor);
+    make_generic(request, surfaces, record, monitor);
     add_thickness(surfaces);
     for (const auto& [name, surface] : surfaces) {
       io::write_surface(partial / (name + ".vtp"), surface);
@@ -208,7 +248,7 @@ Record run_segment_stage(const SegmentRequest& request, const fs::path& folder, 
     }
     io::write_labels(partial / "labels.nii.gz", make_label_map(images.front(), surfaces));
   };
-  return run_stage(folder, with_pins(as_found, request), reuse, monitor, body);
+  return run_stage(folder, with_corrections(as_found, request), reuse, monitor, body);
 }
 
 void add_thickness(SurfaceSet& surfaces) {

@@ -2,6 +2,7 @@
 
 #include <coxa/core/error.h>
 #include <coxa/io/config.h>
+#include <coxa/pipeline/structures.h>
 
 #include <cstdlib>
 
@@ -203,6 +204,12 @@ Subject read_subject(const fs::path& path) {
     subject.pins = existing(*table, "path", table->find_path("path"));
     table->finish();
   }
+  if (const auto table = root.find_table("labels")) {
+    subject.labels = existing(*table, "path", table->find_path("path"));
+    table->finish();
+  }
+  if (const auto list = root.find<std::string>("structures"))
+    subject.structures = structures_from("bones,cartilage," + *list);
   subject.atlas = shipped_data("atlas/hip.coxa-atlas");
   if (const auto table = root.find_table("atlas")) {
     subject.atlas = existing(*table, "path", table->find_path("path"));

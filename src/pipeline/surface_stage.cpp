@@ -7,6 +7,8 @@
 #include <coxa/mesh/repair.h>
 #include <coxa/pipeline/segment_stage.h>
 
+#include "generic_structures.h"
+
 namespace coxa::pipeline {
 namespace {
 
@@ -16,6 +18,10 @@ Record wanted_record(const SurfaceRequest& request) {
   record.options = {{"side", std::string(request.side == Side::left ? "left" : "right")},
                     {"source", std::string("surfaces given in place of an image")}};
   for (const auto& [name, path] : request.surfaces) record.inputs[name] = io::sha256_of_path(path);
+  std::string list;
+  for (const std::string& name : generic_among(request.structures))
+    list += (list.empty() ? "" : ",") + name;
+  if (!list.empty()) record.options["generic"] = list;
   return record;
 }
 
@@ -41,12 +47,13 @@ Record run_surface_stage(const SurfaceRequest& request, const std::filesystem::p
       surfaces[name] = usable(name, path, record);
       record.figures[name + "_volume_mm3"] = volume(surfaces[name].mesh);
     }
+    for (const std::string& text : record.warnings) monitor.warn(text);
+    add_generic(surfaces, request.structures, request.side, nullptr, record, monitor);
     add_thickness(surfaces);
     for (const auto& [name, surface] : surfaces) {
       io::write_surface(partial / (name + ".vtp"), surface);
       io::write_surface(partial / (name + ".ply"), surface);
     }
-    for (const std::string& text : record.warnings) monitor.warn(text);
   };
   return run_stage(folder, wanted_record(request), reuse, monitor, body);
 }

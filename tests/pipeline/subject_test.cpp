@@ -55,6 +55,13 @@ TEST_F(SubjectFile, FindsAMovementFileBesideItAndNeverTakesAFolderForOne) {
           .motion.pattern,
       (folder_ / "mine.toml").string());
 }
+TEST_F(SubjectFile, NamesItsStructuresAndEditedLabels) {
+  EXPECT_TRUE(read(good_).structures.empty());
+  const Subject s = read("structures = \"labrum\"\n" + good_ + "[labels]\npath = \"t1.nii.gz\"\n");
+  EXPECT_EQ(s.structures, (std::vector<std::string>{"femur", "hip_bone", "femoral_cartilage",
+                                                    "acetabular_cartilage", "acetabular_labrum"}));
+  EXPECT_EQ(s.labels, folder_ / "t1.nii.gz");
+}
 TEST_F(SubjectFile, NamesItsPins) {
   EXPECT_EQ(read(good_).pins, fs::path());
   EXPECT_EQ(read(good_ + "[pins]\npath = \"places.mrk.json\"\n").pins, folder_ / "places.mrk.json");

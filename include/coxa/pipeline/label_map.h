@@ -7,7 +7,7 @@
 namespace coxa::pipeline {
 
 /// The voxels whose centres lie in each closed surface; where two overlap a cartilage wins over a
-/// bone, and a bone over a muscle.
+/// bone, a bone over labrum and ligaments, and these over a muscle.
 /// @param grid  size, spacing, origin and direction of the result; its values are not read
 io::LabelMap make_label_map(const Volume& grid, const SurfaceSet& surfaces);
 

@@ -20,13 +20,16 @@ struct SegmentRequest {
   segment::SegmentOptions options;
   std::filesystem::path pins = {};  ///< points named `<structure>-<n>`; empty: none
   double pin_weight = 1.0;          ///< of each, see segment::Pin
+  /// `labels.nii.gz` (or .seg.nrrd) of an earlier result, corrected by hand; empty: none
+  std::filesystem::path labels = {};
 };
 
 /// Segments the images into `folder`: one VTP and PLY per structure, `labels.nii.gz` with
 /// `labels.json`, `thickness` fields on the cartilages, and the record `segment.json`.
 ///
-/// With pins the surfaces as found in the image are kept in `folder/found`: other pins are set on
-/// these, without another search.
+/// With pins or edited labels the surfaces as found in the image are kept in `folder/found`: other
+/// corrections are made on these, without another search. Labrum and ligaments among the structures
+/// are generic and made last.
 Record run_segment_stage(const SegmentRequest& request, const std::filesystem::path& folder,
                          Reuse reuse, const Monitor& monitor);
 
@@ -40,7 +43,7 @@ Volume read_image(const ImageEntry& entry, const shape::Landmarks& landmarks,
 /// surface, mm.
 void add_thickness(SurfaceSet& surfaces);
 
-/// The surfaces a segment stage left in `folder`, by structure.
+/// The bones and cartilages a segment stage left in `folder`, by structure.
 /// @throws Error bad_file if there is none
 SurfaceSet read_surfaces(const std::filesystem::path& folder);
 

@@ -75,7 +75,10 @@ struct Subject {
       surfaces;                     ///< by structure, in place of images: a hip segmented elsewhere
   std::filesystem::path landmarks;  ///< `.mrk.json` or CSV
   std::filesystem::path pins;       ///< likewise; points named `<structure>-<n>`
-  std::filesystem::path atlas;      ///< the shipped one where the file names none
+  std::filesystem::path labels;     ///< label map of an earlier result, corrected by hand
+  /// What is segmented or made; empty: bones and cartilages. These are always among it.
+  std::vector<std::string> structures;
+  std::filesystem::path atlas;  ///< the shipped one where the file names none
   MotionEntry motion;
   MeshEntry mesh;
   JointEntry joint;

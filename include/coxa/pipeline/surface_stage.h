@@ -7,12 +7,15 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace coxa::pipeline {
 
 struct SurfaceRequest {
   std::map<std::string, std::filesystem::path> surfaces;  ///< by structure
   Side side = Side::right;
+  /// Labrum and ligaments to be made beside them; other names are those of the surfaces.
+  std::vector<std::string> structures = {};
 };
 
 /// Takes surfaces segmented elsewhere in place of a segment stage: checked, repaired where they
