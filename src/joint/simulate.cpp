@@ -52,8 +52,9 @@ FrameResult without_result(const FrameResult& frame) {
   FrameResult failed;
   failed.frame = frame.frame;
   failed.status = FrameStatus::failed;
-  failed.reason = join_text("an element of the ", frame.crush.body, " near ", frame.crush.place.transpose(),
-                            " is turned inside out: volume ratio ", frame.crush.least_volume_ratio);
+  failed.reason =
+      join_text("an element of the ", frame.crush.body, " near ", frame.crush.place.transpose(),
+                " is turned inside out: volume ratio ", frame.crush.least_volume_ratio);
   failed.angles = frame.angles;
   failed.X_II = frame.X_II;
   failed.bone_clearance = frame.bone_clearance;

@@ -34,8 +34,8 @@ void write_residuals(const std::filesystem::path& path, const motion::TrackResul
 void write_joint_centres(const std::filesystem::path& path,
                          const std::vector<motion::JointCentre>& centres);
 
-/// What the laboratory marked in time and what was found, as CSV: time_s, label, context, source; in
-/// the order of time.
+/// What the laboratory marked in time and what was found, as CSV: time_s, label, context, source;
+/// in the order of time.
 void write_events(const std::filesystem::path& path,
                   const std::vector<motion::MarkerEvent>& events);
 
