@@ -3,6 +3,7 @@
 #include <coxa/core/error.h>
 
 #include <algorithm>
+
 #include "element_assembly.h"
 #include "volume_measure.h"
 
@@ -16,6 +17,16 @@ struct PatchList {
   std::vector<std::int64_t> start{0};
   std::vector<Index> elements;
 };
+
+/// The mesh with its elements in the order of the list, so that what is worked on together lies
+/// together.
+TetMesh in_order_of(const PatchList& patches, const TetMesh& mesh) {
+  TetMesh ordered;
+  ordered.points = mesh.points;
+  ordered.tets = mesh.tets(patches.elements, Eigen::all);
+  if (mesh.mid_nodes.rows() > 0) ordered.mid_nodes = mesh.mid_nodes(patches.elements, Eigen::all);
+  return ordered;
+}
 
 PatchList list_patches(const std::vector<Index>& patch_of, Index n_elements) {
   require(static_cast<Index>(patch_of.size()) == n_elements, "patches are given for ",
@@ -44,8 +55,8 @@ PatchList list_patches(const std::vector<Index>& patch_of, Index n_elements) {
 struct MeanDilatation::Impl {
   Impl(const TetMesh& mesh, const std::vector<Index>& patch_of, double lambda_, ParticleMap map,
        const Options& options_)
-      : assembly(mesh, std::move(map), {}),
-        patches(list_patches(patch_of, mesh.n_tets())),
+      : patches(list_patches(patch_of, mesh.n_tets())),
+        assembly(in_order_of(patches, mesh), std::move(map), {}),
         lambda(lambda_),
         options(options_),
         measure(make_volume_measure(options_.dilatation)) {
@@ -54,12 +65,12 @@ struct MeanDilatation::Impl {
   }
 
   Index n_patches() const { return static_cast<Index>(patches.start.size()) - 1; }
-  /// Calls body(element, its place in the list) for the elements of a patch.
+  /// Calls body(place in the list) for the elements of a patch.
   template <class Body>
   void each_element(Index patch, const Body& body) const {
     for (auto k = patches.start[static_cast<Size>(patch)];
          k < patches.start[static_cast<Size>(patch) + 1]; ++k)
-      body(patches.elements[static_cast<Size>(k)], static_cast<Size>(k));
+      body(static_cast<Index>(k));
   }
 
   /// The distinct particles of each patch, and where the corners of its elements stand among them.
@@ -70,21 +81,21 @@ struct MeanDilatation::Impl {
     slot_of_corner.resize(patches.elements.size() * n);
     for (Index patch = 0; patch < n_patches(); ++patch) {
       std::vector<Index> found;
-      each_element(patch, [&](Index e, Size) {
+      each_element(patch, [&](Index e) {
         for (int a = 0; a < assembly.n_nodes(); ++a) found.push_back(assembly.particle(e, a));
       });
       std::sort(found.begin(), found.end());
       found.erase(std::unique(found.begin(), found.end()), found.end());
-      each_element(patch, [&](Index e, Size k) {
+      each_element(patch, [&](Index e) {
         for (int a = 0; a < assembly.n_nodes(); ++a)
-          slot_of_corner[k * n + static_cast<Size>(a)] = static_cast<int>(
+          slot_of_corner[static_cast<Size>(e) * n + static_cast<Size>(a)] = static_cast<int>(
               std::lower_bound(found.begin(), found.end(), assembly.particle(e, a)) -
               found.begin());
       });
       particle.insert(particle.end(), found.begin(), found.end());
       start.push_back(static_cast<std::int64_t>(particle.size()));
       double volume = 0.0;
-      each_element(patch, [&](Index e, Size) {
+      each_element(patch, [&](Index e) {
         for (int q = 0; q < assembly.n_points(); ++q) volume += assembly.weight(e, q);
       });
       rest_volume.push_back(volume);
@@ -92,13 +103,14 @@ struct MeanDilatation::Impl {
     scatter = Scatter(std::move(start), std::move(particle));
   }
 
-  int slot(Size k, int a) const {
-    return slot_of_corner[k * static_cast<Size>(assembly.n_nodes()) + static_cast<Size>(a)];
+  int slot(Index e, int a) const {
+    return slot_of_corner[static_cast<Size>(e) * static_cast<Size>(assembly.n_nodes()) +
+                          static_cast<Size>(a)];
   }
   /// Mean of the measure over the patch.
   double mean(const VecX& x, Index patch) const {
     double sum = 0.0;
-    each_element(patch, [&](Index e, Size) {
+    each_element(patch, [&](Index e) {
       for (int q = 0; q < assembly.n_points(); ++q)
         sum += assembly.weight(e, q) * measure->energy_density(assembly.gradient_of(x, e, q));
     });
@@ -109,13 +121,13 @@ struct MeanDilatation::Impl {
     if (assembly.n_nodes() == 4) return mean_in_lanes(x, patch, gradient);
     std::fill_n(gradient, scatter.size(patch), Vec3::Zero());
     double sum = 0.0;
-    each_element(patch, [&](Index e, Size k) {
+    each_element(patch, [&](Index e) {
       for (int q = 0; q < assembly.n_points(); ++q) {
         const double weight = assembly.weight(e, q);
         Mat3 slope;
         sum += weight * measure->energy_with_piola(assembly.gradient_of(x, e, q), slope);
         for (int a = 0; a < assembly.n_nodes(); ++a)
-          gradient[slot(k, a)] += weight * (slope * assembly.shape_gradient(e, q, a));
+          gradient[slot(e, a)] += weight * (slope * assembly.shape_gradient(e, q, a));
       }
     });
     return sum / rest_volume[static_cast<Size>(patch)];
@@ -124,14 +136,13 @@ struct MeanDilatation::Impl {
   double mean_in_lanes(const VecX& x, Index patch, Vec3* gradient) const {
     std::fill_n(gradient, scatter.size(patch), Vec3::Zero());
     double sum = 0.0;
-    const auto first = static_cast<Size>(patches.start[static_cast<Size>(patch)]);
-    const auto last = static_cast<Size>(patches.start[static_cast<Size>(patch) + 1]);
-    for (Size k = first; k < last; k += kLanes) {
+    const auto first = static_cast<Index>(patches.start[static_cast<Size>(patch)]);
+    const auto last = static_cast<Index>(patches.start[static_cast<Size>(patch) + 1]);
+    for (Index k = first; k < last; k += kLanes) {
       // the last group is filled up with its last element
-      const int n = static_cast<int>(std::min<Size>(kLanes, last - k));
+      const int n = std::min<Index>(kLanes, last - k);
       Index element[kLanes];
-      for (int lane = 0; lane < kLanes; ++lane)
-        element[lane] = patches.elements[std::min(k + static_cast<Size>(lane), last - 1)];
+      for (int lane = 0; lane < kLanes; ++lane) element[lane] = std::min(k + lane, last - 1);
       ElementAssembly::LanePositions positions;
       LaneElements elements = assembly.lane_elements(x, element, positions);
       double pull[kLanes][12], value[kLanes];
@@ -143,8 +154,7 @@ struct MeanDilatation::Impl {
       for (int lane = 0; lane < n; ++lane) {
         sum += elements.weight[lane] * value[lane];
         for (int a = 0; a < 4; ++a)
-          gradient[slot(k + static_cast<Size>(lane), a)] -=
-              Eigen::Map<const Vec3>(pull[lane] + 3 * a);
+          gradient[slot(k + lane, a)] -= Eigen::Map<const Vec3>(pull[lane] + 3 * a);
       }
     }
     return sum / rest_volume[static_cast<Size>(patch)];
@@ -152,7 +162,7 @@ struct MeanDilatation::Impl {
   /// Adds factor times the second derivative of mean times rest volume.
   void add_curvature(const VecX& x, Index patch, double factor, Mat3* blocks) const {
     const int n = scatter.size(patch), nodes = assembly.n_nodes();
-    each_element(patch, [&](Index e, Size k) {
+    each_element(patch, [&](Index e) {
       Mat3 own[55];  // of up to ten nodes
       std::fill_n(own, nodes * (nodes + 1) / 2, Mat3::Zero());
       for (int q = 0; q < assembly.n_points(); ++q)
@@ -161,7 +171,7 @@ struct MeanDilatation::Impl {
       for (int a = 0; a < nodes; ++a)
         for (int b = a; b < nodes; ++b) {
           const Mat3& block = own[Scatter::block_number(nodes, a, b)];
-          const int i = slot(k, a), j = slot(k, b);
+          const int i = slot(e, a), j = slot(e, b);
           if (i <= j) blocks[Scatter::block_number(n, i, j)] += block;
           // both orders of a pair fall on the same block where its nodes share a particle
           if (i > j || (i == j && a != b))
@@ -181,8 +191,8 @@ struct MeanDilatation::Impl {
            resistance.slope > 0.0;
   }
 
-  ElementAssembly assembly;
   PatchList patches;
+  ElementAssembly assembly;  // elements in the order of the list
   double lambda;
   Options options;
   std::unique_ptr<const Material> measure;
@@ -244,7 +254,7 @@ void MeanDilatation::add_element_jacobian(const VecX& x, solve::BlockMatrix& A) 
   parallel_for(impl_->n_patches(), [&](Index patch) {
     const auto resistance = impl_->resistance(impl_->mean(x, patch));
     if (!impl_->is_curved(resistance)) return;
-    impl_->each_element(patch, [&](Index e, Size) { slope[e] = resistance.slope; });
+    impl_->each_element(patch, [&](Index e) { slope[e] = resistance.slope; });
   });
   impl_->assembly.add_jacobian(
       [&](Index e, int q, double weight, Mat3* blocks) {
@@ -290,9 +300,9 @@ std::vector<Mat3> MeanDilatation::cauchy_stress(const VecX& x) const {
   std::vector<Mat3> stress(static_cast<Size>(assembly.n_elements()), Mat3::Zero());
   parallel_for(impl_->n_patches(), [&](Index patch) {
     const double slope = impl_->resistance(impl_->mean(x, patch)).slope;
-    impl_->each_element(patch, [&](Index e, Size) {
+    impl_->each_element(patch, [&](Index e) {
       double volume = 0.0;
-      Mat3& sum = stress[static_cast<Size>(e)];
+      Mat3& sum = stress[static_cast<Size>(impl_->patches.elements[static_cast<Size>(e)])];
       for (int q = 0; q < assembly.n_points(); ++q) {
         const Mat3 F = assembly.gradient_of(x, e, q);
         sum += assembly.weight(e, q) * cauchy_from(slope * impl_->measure->first_piola(F), F);
