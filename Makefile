@@ -51,11 +51,13 @@ verify: configure
 	@cmake --build $(BUILD) --target coxa_verify
 	@$(BUILD)/coxa_verify
 
-# Speed of the hot paths.
+# Speed of the hot paths, and coxa beside other programs.
 bench: configure
+	@tools/install_deps.sh --programs
 	@cmake --preset release -DCOXA_BENCHMARKS=ON > /dev/null
 	@cmake --build $(BUILD)
 	@for program in $(BUILD)/*_bench; do echo "== $$program"; $$program || exit 1; done
+	@tools/side_by_side.sh $(BUILD)
 
 # The pages are Markdown in docs/; this checks that every relative link in them leads somewhere.
 docs:

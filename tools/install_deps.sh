@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that coxa needs and that are missing; does nothing when all are there.
+# Installs the Debian packages that coxa needs and that are missing; does nothing when all are there. With --programs
+# also those that coxa is only compared with (tools/side_by_side.sh).
 set -euo pipefail
 
 packages=(
@@ -13,6 +14,7 @@ packages=(
 # node and npm may have come from elsewhere
 command -v node >/dev/null || packages+=(nodejs)
 command -v npm >/dev/null || packages+=(npm)
+[ "${1:-}" = --programs ] && packages+=(tetgen gmsh libcgal-dev calculix-ccx python3-numpy python3-vtk9 python3-matplotlib)
 
 missing=()
 for package in "${packages[@]}"; do

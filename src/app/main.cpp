@@ -48,8 +48,10 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", pipeline::version());
   app.require_subcommand(1);
   add_verbs(app, context);
+  // groups of options are listed among the subcommands, without a name
+  const auto is_verb = [](CLI::App* entry) { return !entry->get_name().empty(); };
   for (CLI::App* verb : app.get_subcommands({})) {
-    const auto nested = verb->get_subcommands({});
+    const auto nested = verb->get_subcommands(is_verb);
     for (CLI::App* target : nested) add_common_flags(*target, context.common);
     if (nested.empty()) add_common_flags(*verb, context.common);
   }

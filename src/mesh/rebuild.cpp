@@ -234,7 +234,7 @@ double largest_loss(const TriMesh& mesh, const TriMesh& made, double allowed) {
     }
   }
   if (largest > allowed)
-    fail(ErrorCode::bad_mesh, "a new surface would leave out what reaches ", largest,
+    fail(ErrorCode::below_quality, "a new surface would leave out what reaches ", largest,
          " mm out of it, more than ", allowed, " mm");
   return largest;
 }

@@ -69,7 +69,7 @@ std::optional<Rebuilt> made_anew_evenly(const TriMesh& surface) {
                              .target_edge = kRebuildEdge,
                              .max_loss = kLargestLoss});
   } catch (const Error& error) {
-    if (error.code() == ErrorCode::cancelled) throw;
+    if (error.code() != ErrorCode::below_quality) throw;
     return std::nullopt;
   }
 }

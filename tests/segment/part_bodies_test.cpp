@@ -30,7 +30,7 @@ TEST(PartBodies, PartsSoftOnesHalfWayAndNeverMovesFirmOnes) {
   TriMesh left = ball_at(-9.0, 10.0), right = ball_at(9.0, 10.0);
   const TriMesh below = [] {
     TriMesh mesh = ball_at(0.0, 10.0);
-    mesh.points.col(2).array() -= 14.0;
+    mesh.points.col(2).array() -= 15.5;
     return mesh;
   }();
   ASSERT_GT(depth_in(left, right), 1.5);

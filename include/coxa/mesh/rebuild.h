@@ -33,7 +33,7 @@ struct Rebuilt {
 /// level of the distance signed so is remeshed, unless even triangles fold; pieces below a
 /// hundredth of the largest one's area are dropped.
 /// @throws Error   bad_mesh if nothing is enclosed, or the new surface would be farther off than
-///                 `max_move`, or leave out more than `max_loss`
+///                 `max_move`; below_quality if it would leave out more than `max_loss`
 Rebuilt rebuild(const TriMesh& mesh, const RebuildOptions& options = {});
 
 }  // namespace coxa
