@@ -19,6 +19,13 @@ const verdict = "#side p[data-status]";
 const flexion = async (): Promise<number> => Number(/flexion (-?[\d.]+)°/.exec(await page.innerText(verdict))?.[1]);
 const hit = async (): Promise<string> => (await page.getAttribute("#scene", "data-hit")) ?? "";
 
+/** Led to rest, where nothing is hit. */
+async function rest(): Promise<void> {
+  await page.click("text=Rest");
+  await expect.poll(flexion, { timeout: 120_000 }).toBeLessThan(1);
+  await expect.poll(hit).toBe("");
+}
+
 describe("a hip with a labrum", () => {
   test("the result draws it, tells where the femur first touches it, and shows the place", async () => {
     expect(await page.locator("[data-layer=acetabular_labrum]").count()).toBe(1);
@@ -33,7 +40,7 @@ describe("a hip with a labrum", () => {
   test("the live examination tells its distance, and shows where the femur presses on it", async () => {
     await page.click("#tab-exam");
     await page.waitForSelector(verdict, { timeout: 30_000 });
-    await expect.poll(hit).toBe("");
+    await rest();
     await page.click("text=Flexion 90");
     await expect.poll(() => page.innerText(verdict), { timeout: 120_000 }).toMatch(/mm into the labrum at \d+:\d\d o'clock/);
     await expect.poll(hit).not.toBe("");
@@ -42,9 +49,5 @@ describe("a hip with a labrum", () => {
     await page.screenshot({ path: picture("labrum_exam_1280_light") });
     expect(faults).toEqual([]);
   });
-  test("back at rest nothing is hit, and the mark is gone", async () => {
-    await page.click("text=Rest");
-    await expect.poll(flexion, { timeout: 120_000 }).toBeLessThan(1);
-    await expect.poll(hit).toBe("");
-  });
+  test("back at rest nothing is hit, and the mark is gone", rest);
 });
