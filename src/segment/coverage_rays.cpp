@@ -130,13 +130,6 @@ double likeliest_cartilage(const std::vector<CoverageRay>& telling, std::size_t 
   return best;
 }
 
-/// What a well explained sample costs: the mean over clear layers, to which all ends are seen.
-double mean_misfit(const std::vector<CoverageRay>& telling) {
-  double sum = 0.0;
-  for (const CoverageRay& ray : telling) sum += ray.fit.misfit;
-  return telling.empty() ? 1.0 : sum / static_cast<double>(telling.size());
-}
-
 }  // namespace
 
 double blur_along(const Volume& volume, const Vec3& normal) {
@@ -187,9 +180,8 @@ std::vector<TissueBrightness> update_fits(std::vector<CoverageRay>& rays, std::s
       continue;
     }
     update_fits_in(rays, image, *brightness);
-    const std::vector<CoverageRay> telling = telling_rays(rays, image, *brightness);
-    if (brightness->cartilage <= brightness->marrow) brightness->unexplained = mean_misfit(telling);
-    brightness->cartilage = likeliest_cartilage(telling, image, *brightness);
+    brightness->cartilage =
+        likeliest_cartilage(telling_rays(rays, image, *brightness), image, *brightness);
     brightness->cartilage_deviation = kSecondSpread * std::abs(brightness->cartilage);
     update_fits_in(rays, image, *brightness);
     all[image] = *brightness;

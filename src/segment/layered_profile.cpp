@@ -20,7 +20,8 @@ constexpr double kInside = 1.25, kBeyond = 1.0, kBeyondSheath = 1.5;
 constexpr double kMarrowSpread = 0.1, kSheathSpread = 0.15, kBeyondSpread = 3.0;
 // a sheath is as dark as cortex, or this much of the way to a brighter cartilage
 constexpr double kSheathShare = 0.25;
-// a sample's squared residual, in units of noise, counts at most this much
+// a sample's squared residual, in units of noise, counts at most this much; one outside the
+// hypothesis counts as one of noise
 constexpr double kLargestResidual = 9.0;
 // samples up to here, mm, tell whether this is bone at all: how far (relative) their mean may be
 // from the marrow's, and the evidence against a layer where it is not
@@ -28,9 +29,6 @@ constexpr double kMarrowUpTo = -2.5, kForeignSpread = 0.2, kForeign = 5.0;
 // bare bone next to something as bright as cartilage would be a chance: cost, and how near is near
 // (share of the contrast of cartilage and cortex)
 constexpr double kLikeCartilage = 12.0, kNearness = 0.3;
-// where what is beyond is as bright as the cartilage, the cartilage goes on: cost, and what is as
-// bright (share of the same contrast)
-constexpr double kNoEnd = 6.0, kVisible = 0.25;
 // cartilage brighter than marrow is the brightest tissue: so bright are only it and fluid on it
 constexpr double kBrightShare = 0.6, kBrightWidth = 0.05;
 
@@ -130,13 +128,6 @@ double LayerModel::penalty_of_outside(double outside) const {
   return kLikeCartilage * std::clamp(1.0 + kNearness - off, 0.0, 1.0);
 }
 
-double LayerModel::penalty_of_no_end(double cartilage, double beyond) const {
-  if (brightness_.cartilage > brightness_.marrow) return 0.0;
-  const double visible =
-      kVisible * std::max(std::abs(brightness_.cartilage - brightness_.cortex), brightness_.noise);
-  return kNoEnd * std::max(0.0, 1.0 - std::abs(beyond - cartilage) / visible);
-}
-
 double LayerModel::likeness_to_bone(const VecX& profile) const {
   const double spread = std::max(kForeignSpread * std::abs(brightness_.marrow), brightness_.noise);
   const Index n = std::clamp<Index>(grid_.index_at(kMarrowUpTo), 1, grid_.n);
@@ -149,10 +140,8 @@ LayerModel::Outcome LayerModel::try_on(const Hypothesis& h, const VecX& profile)
   Outcome outcome;
   outcome.brightness = h.gain * y + h.start;
   const Samples residual = (y - h.basis * outcome.brightness) / brightness_.noise;
-  const double explained = residual.cwiseAbs2().cwiseMin(kLargestResidual).sum();
-  outcome.misfit = explained / static_cast<double>(std::max<Index>(1, h.end - h.begin));
-  outcome.cost = explained +
-                 brightness_.unexplained * static_cast<double>(grid_.n - (h.end - h.begin)) +
+  outcome.cost = residual.cwiseAbs2().cwiseMin(kLargestResidual).sum() +
+                 static_cast<double>(grid_.n - (h.end - h.begin)) +
                  (outcome.brightness - h.prior).cwiseAbs2().dot(h.weight);
   return outcome;
 }
@@ -162,8 +151,7 @@ LayerFit LayerModel::fit(const VecX& profile) const {
   LayerFit best;
   for (const Hypothesis& h : hypotheses_) {
     Outcome outcome = try_on(h, profile);
-    outcome.cost += h.covered ? penalty_of_no_end(outcome.brightness[1], outcome.brightness[2])
-                              : penalty_of_outside(outcome.brightness.tail<1>()[0]);
+    if (!h.covered) outcome.cost += penalty_of_outside(outcome.brightness.tail<1>()[0]);
     Outcome& least = h.covered ? covered : bare;
     if (outcome.cost >= least.cost) continue;
     if (h.covered) {
@@ -175,7 +163,6 @@ LayerFit LayerModel::fit(const VecX& profile) const {
     least = std::move(outcome);
   }
   best.cost = covered.cost;
-  best.misfit = covered.misfit;
   const double like_bone = likeness_to_bone(profile);
   best.evidence = like_bone * 0.5 * (bare.cost - covered.cost) - (1.0 - like_bone) * kForeign;
   return best;

@@ -117,23 +117,4 @@ TEST(LayerModel, RefusesABlurOrNoiseOfNothing) {
   EXPECT_THROW(LayerModel(kT1, 0.4, {-4.0, 0.1, 100}), Error);
 }
 
-TEST(LayerModel, LayerIsNotThickerOnlyToExplainMore) {
-  // beyond a layer of 1.2 mm all is middling: a thicker one would explain more samples, not better
-  TissueBrightness strict = kT1;
-  strict.noise = 20.0;
-  TissueBrightness lenient = strict;
-  strict.unexplained = 0.05;
-  const VecX profile = covered(kT1, 0.0, 1.0, 1.2, 70.0);
-  const double thick = LayerModel(lenient, 0.4).fit(profile).thickness;
-  EXPECT_LT(LayerModel(strict, 0.4).fit(profile).thickness, thick - 0.1);
-  EXPECT_NEAR(LayerModel(strict, 0.4).fit(profile).thickness, 1.2, 0.11);
-}
-
-TEST(LayerModel, LayerGoesOnWhereNothingIsSeenToEnd) {
-  TissueBrightness b = kT1;
-  b.unexplained = 0.05;
-  const LayerFit fit = LayerModel(b, 0.4).fit(covered(b, 0.1, 1.0, 3.4, 20.0));
-  EXPECT_NEAR(fit.thickness, 3.4, 0.21);
-}
-
 }  // namespace coxa::segment

@@ -13,9 +13,6 @@ struct TissueBrightness {
   double marrow = 0.0, cortex = 0.0, cartilage = 0.0;
   double cartilage_deviation = 0.0;  ///< standard deviation of what is known of the cartilage's
   double noise = 1.0;                ///< standard deviation of a sample from the layered model, > 0
-  /// What a sample costs that a hypothesis says nothing of: as much as one well explained, so that
-  /// no layer is thicker only to explain more.
-  double unexplained = 1.0;
 };
 
 /// Where a profile is sampled: from `first` mm (negative: inside the bone) in steps, outwards.
@@ -40,7 +37,6 @@ struct LayerFit {
   double cartilage = 0.0;  ///< its brightness
   double beyond = 0.0;     ///< that of what lies on it
   double cost = 0.0;       ///< of the cartilage: squared residuals in units of noise, and priors
-  double misfit = 0.0;     ///< of the cartilage: mean squared residual of what it explains
 };
 
 /// Profiles of tissue in layers, blurred: marrow, cortex, then cartilage of some thickness and
@@ -71,15 +67,13 @@ class LayerModel {
     VecX prior, weight;        ///< of the unknowns: mean, 1 / variance
   };
   struct Outcome {
-    double cost = kInfinity, misfit = 0.0;
+    double cost = kInfinity;
     Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> brightness;
   };
   Hypothesis make(double bone, double cortex, double thickness, bool covered, double blur) const;
   Outcome try_on(const Hypothesis& hypothesis, const VecX& profile) const;
   /// Of bare bone beside something as bright as cartilage.
   double penalty_of_outside(double outside) const;
-  /// Of a layer that ends where nothing is seen to end.
-  double penalty_of_no_end(double cartilage, double beyond) const;
   /// In [0, 1]: whether the brightness inside is the marrow's. Elsewhere the bone's border is
   /// wrong, and cartilage beyond it is another bone's.
   double likeness_to_bone(const VecX& profile) const;
