@@ -64,23 +64,21 @@ def write_poly(path, points, triangles):
     path.write_text("\n".join(lines) + "\n")
 
 
+def tetgen(judge, surface, work, name, switches, size):
+    write_poly(work / f"{name}.poly", *surface_arrays(judge, surface))
+    seconds = run(["tetgen", f"{switches}a{size ** 3 / 8.5:.6f}", work / f"{name}.poly"], work / f"{name}.log")
+    return seconds, work / f"{name}.1.node"
+
+
 def by_tetgen(_arguments, judge, surface, work, size):
-    points, triangles = surface_arrays(judge, surface)
-    poly = work / "tetgen.poly"
-    write_poly(poly, points, triangles)
     # Y keeps the surface's triangles: without it thin shells get ten times the elements; where they are large, their number
     # bounds that of the elements
-    seconds = run(["tetgen", f"-pYq1.2/18O9/7a{size ** 3 / 8.5:.6f}", poly], work / "tetgen.log")
-    return seconds, work / "tetgen.1.node"
+    return tetgen(judge, surface, work, "tetgen", "-pYq1.2/18O9/7", size)
 
 
 def by_tetgen_alone(_arguments, judge, surface, work, size):
     """With the right to split the surface's triangles too."""
-    points, triangles = surface_arrays(judge, surface)
-    poly = work / "tetgen_alone.poly"
-    write_poly(poly, points, triangles)
-    seconds = run(["tetgen", f"-pq1.414/10O9/7a{size ** 3 / 8.5:.6f}", poly], work / "tetgen_alone.log")
-    return seconds, work / "tetgen_alone.1.node"
+    return tetgen(judge, surface, work, "tetgen_alone", "-pq1.414/10O9/7", size)
 
 
 def by_gmsh(_arguments, judge, surface, work, size):

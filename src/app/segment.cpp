@@ -35,9 +35,10 @@ pipeline::SurfaceRequest surface_request(const SegmentArguments& arguments) {
 }
 
 void run_segment(const SegmentArguments& arguments, Context& context) {
+  const auto reuse = arguments.resume ? pipeline::Reuse::if_unchanged : pipeline::Reuse::never;
   if (!arguments.surfaces.empty()) {
     const auto record = pipeline::run_surface_stage(surface_request(arguments), arguments.out,
-                                                    pipeline::Reuse::never, context.monitor());
+                                                    reuse, context.monitor());
     context.print_result(arguments.out, record);
     return;
   }
@@ -56,7 +57,6 @@ void run_segment(const SegmentArguments& arguments, Context& context) {
   request.labels = arguments.labels;
   request.options.landmark_error = arguments.landmark_error;
   if (!arguments.contrast.empty()) request.options.contrast = arguments.contrast;
-  const auto reuse = arguments.resume ? pipeline::Reuse::if_unchanged : pipeline::Reuse::never;
   const auto record = pipeline::run_segment_stage(request, arguments.out, reuse, context.monitor());
   context.print_result(arguments.out, record);
 }

@@ -1,4 +1,5 @@
 #include <coxa/geom/fits.h>
+#include <coxa/geom/median.h>
 
 #include <coxa/core/error.h>
 
@@ -82,12 +83,6 @@ Sphere geometric_sphere(const Points& points, const VecX& weights, Sphere sphere
     if (step.norm() <= 1e-13 * sphere.radius) break;
   }
   return sphere;
-}
-
-double median(VecX values) {
-  auto middle = values.data() + values.size() / 2;
-  std::nth_element(values.data(), middle, values.data() + values.size());
-  return *middle;
 }
 
 }  // namespace

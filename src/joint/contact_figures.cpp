@@ -35,18 +35,22 @@ std::vector<collide::ContactSample> samples_in_contact(
   return samples;
 }
 
-double pressure_percentile(const std::vector<collide::ContactSample>& samples, double share) {
-  std::vector<std::pair<double, double>> sorted;  // pressure, area
-  for (const auto& sample : samples) sorted.emplace_back(sample.pressure, sample.area);
-  std::stable_sort(sorted.begin(), sorted.end(),
+double weighted_percentile(std::vector<std::pair<double, double>> values, double share) {
+  std::stable_sort(values.begin(), values.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   double total = 0.0, below = 0.0;
-  for (const auto& [pressure, area] : sorted) total += area;
-  for (const auto& [pressure, area] : sorted) {
-    below += area;
-    if (below >= share * total) return pressure;
+  for (const auto& [value, weight] : values) total += weight;
+  for (const auto& [value, weight] : values) {
+    below += weight;
+    if (below >= share * total) return value;
   }
-  return sorted.empty() ? 0.0 : sorted.back().first;
+  return values.empty() ? 0.0 : values.back().first;
+}
+
+double pressure_percentile(const std::vector<collide::ContactSample>& samples, double share) {
+  std::vector<std::pair<double, double>> pressures;
+  for (const auto& sample : samples) pressures.emplace_back(sample.pressure, sample.area);
+  return weighted_percentile(std::move(pressures), share);
 }
 
 double patch_peak(const std::vector<collide::ContactSample>& samples, double area) {

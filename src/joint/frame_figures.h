@@ -2,6 +2,9 @@
 
 #include <coxa/joint/joint_result.h>
 
+#include <utility>
+#include <vector>
+
 #include "equilibrium.h"
 
 namespace coxa::joint {
@@ -34,6 +37,10 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
 std::vector<collide::ContactSample> samples_in_contact(const HipSystem& system,
                                                        const HipState& state,
                                                        std::vector<collide::ContactSample> samples);
+
+/// The value below which `share` of the weight lies; 0 without values.
+/// @param values  each with its weight
+double weighted_percentile(std::vector<std::pair<double, double>> values, double share);
 
 /// Pressure below which `share` of the samples' area lies, MPa; 0 without samples.
 double pressure_percentile(const std::vector<collide::ContactSample>& samples, double share);

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "frame_figures.h"
+
 namespace coxa::joint {
 namespace {
 
@@ -28,14 +30,8 @@ void fill_pressure(FrameResult& frame, const LabrumBody& body, const HipContact&
   for (Index i = 0; i < body.n_nodes(); ++i) {
     if (area[i] > 0.0) pressing.emplace_back(frame.labrum_pressure[i], area[i]);
   }
-  std::sort(pressing.begin(), pressing.end());
   frame.labrum.contact_area = area.sum();
-  double below = 0.0;
-  for (const auto& [pressure, share] : pressing) {
-    frame.labrum.peak_pressure_p99 = pressure;
-    below += share;
-    if (below >= 0.99 * frame.labrum.contact_area) break;
-  }
+  frame.labrum.peak_pressure_p99 = weighted_percentile(std::move(pressing), 0.99);
 }
 
 void fill_strain(LabrumFigures& labrum, const LabrumBody& body, const VecX& x) {
@@ -50,13 +46,7 @@ void fill_strain(LabrumFigures& labrum, const LabrumBody& body, const VecX& x) {
     strains.emplace_back(strain, volumes[e]);
   }
   labrum.strain = sum / volumes.sum();
-  std::sort(strains.begin(), strains.end());
-  double below = 0.0;
-  for (const auto& [strain, volume] : strains) {
-    labrum.peak_strain_p99 = strain;
-    below += volume;
-    if (below >= 0.99 * volumes.sum()) break;
-  }
+  labrum.peak_strain_p99 = weighted_percentile(std::move(strains), 0.99);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <coxa/geom/triangle_tree.h>
 #include <coxa/mesh/measures.h>
 #include <coxa/mesh/topology.h>
+#include <coxa/mesh/triangle_list.h>
 #include <coxa/mesh/vertex_normals.h>
 
 #include <Eigen/Geometry>
@@ -207,10 +208,7 @@ TriMesh part_at_crowded_edges(const TriMesh& mesh, RepairReport& report) {
   std::vector<std::array<Index, 3>> triangles;
   for (Index t = 0; t < mesh.n_triangles(); ++t)
     add_parts(mesh.triangles.row(t), middles.of_triangle.row(t), triangles);
-  parted.triangles.resize(static_cast<Index>(triangles.size()), 3);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    parted.triangles.row(static_cast<Index>(t)) << triangles[t][0], triangles[t][1],
-        triangles[t][2];
+  parted.triangles = triangles_from(triangles);
   return parted;
 }
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "blurred_edge.h"
+
 namespace coxa::segment {
 namespace {
 
@@ -28,11 +30,6 @@ constexpr double kLargestResidual = 9.0;
 
 constexpr Index kMostSamples = 64;
 using Samples = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostSamples, 1>;
-
-/// Share of the way past an edge at `at`, blurred.
-double past(double s, double at, double blur) {
-  return 0.5 * std::erfc(-(s - at) / (std::sqrt(2.0) * blur));
-}
 
 }  // namespace
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blurred_edge.h"
+
 namespace coxa::segment {
 namespace {
 
@@ -34,11 +36,6 @@ constexpr double kBrightShare = 0.6, kBrightWidth = 0.05;
 
 constexpr Index kMostSamples = 64;
 using Samples = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostSamples, 1>;
-
-/// Share of the way past an edge at `at`, blurred.
-double past(double s, double at, double blur) {
-  return 0.5 * std::erfc(-(s - at) / (std::sqrt(2.0) * blur));
-}
 
 }  // namespace
 

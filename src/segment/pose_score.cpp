@@ -11,8 +11,6 @@ namespace {
 
 constexpr double kSampleStep = 2.5;  // mm, along the normal
 constexpr double kWindow = 5.0;  // mm, Gaussian weight of a sample by its distance to the border
-// share of the probes that must be in view for a place to count in full
-constexpr double kShareInView = 0.5;
 constexpr double kFlatShare =
     0.03;  // of the intensity range: profiles flatter than that say nothing
 
@@ -36,10 +34,9 @@ VecX smoothed_at(const VecX& profile, Index n_inside, double step, const VecX& o
 
 }  // namespace
 
-PoseScore::PoseScore(const std::vector<const shape::StructureModel*>& bones,
-                     const PreparedImage& image, double smoothing, Index n_probes)
-    : image_(resampled_isotropic(smoothed(image.volume, smoothing), 0.7 * smoothing)),
-      flat_variance_(std::pow(kFlatShare * image.intensity_range, 2)) {
+PoseScore::PoseScore(const std::vector<const shape::StructureModel*>& bones, const Volume& image,
+                     double intensity_range, double smoothing, Index n_probes)
+    : image_(image), flat_variance_(std::pow(kFlatShare * intensity_range, 2)) {
   std::set<std::string> names;
   for (const shape::ProfileSet& set : bones.front()->profiles) names.insert(set.contrast);
   contrasts_.assign(names.begin(), names.end());

@@ -8,16 +8,21 @@
 
 namespace coxa::segment {
 
+/// Share of the vertices that must be in view for a place to count in full.
+inline constexpr double kShareInView = 0.5;
+
 /// How well the mean shapes of some bones fit an image at a pose: for trying many poses.
 ///
 /// A few vertices of each bone are compared by the correlation of their mean profile with the
-/// image, both smoothed alike. The image is resampled once and sampled once for all contrasts.
+/// image, both smoothed alike. The image is sampled once for all contrasts.
 class PoseScore {
  public:
-  /// @param smoothing  mm, of image and references; the image's voxels become half as large
-  /// @param n_probes   vertices per bone
-  PoseScore(const std::vector<const shape::StructureModel*>& bones, const PreparedImage& image,
-            double smoothing, Index n_probes);
+  /// @param image            smoothed; must outlive this
+  /// @param intensity_range  of the image
+  /// @param smoothing        mm, of the image: the references are smoothed alike
+  /// @param n_probes         vertices per bone
+  PoseScore(const std::vector<const shape::StructureModel*>& bones, const Volume& image,
+            double intensity_range, double smoothing, Index n_probes);
 
   const std::vector<std::string>& contrasts() const { return contrasts_; }
   /// Reliability-weighted mean correlation by contrast, in [-1, 1]; places mostly out of view count
@@ -25,7 +30,7 @@ class PoseScore {
   VecX at(const Similarity& pose) const;
 
  private:
-  Volume image_;
+  const Volume& image_;
   double flat_variance_ = 0.0;
   std::vector<std::string> contrasts_;
   Points points_, normals_;          // of all bones' probes

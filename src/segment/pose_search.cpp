@@ -16,6 +16,8 @@ namespace {
 /// mm. Image and references are smoothed so far that a grid of this spacing misses nothing.
 constexpr double kGrid = 10.0;
 constexpr double kSmoothing = 3.0;
+/// Of the smoothing: voxels so large lose nothing of a smoothed image.
+constexpr double kVoxelShare = 0.7;
 /// Vertices per bone that are compared at each place: enough to tell a hip, few enough to try a
 /// hundred thousand; and at the places that are left.
 constexpr Index kProbes = 100, kManyProbes = 300;
@@ -30,8 +32,6 @@ constexpr double kTurn = 0.26;
 /// mm. So far inside the image lies the joint's centre: an image that cuts the head shows no joint,
 /// and at its border few vertices are in view, which fit by chance.
 constexpr double kInside = 15.0;
-/// Share of the vertices that must be in view for a place to count in full.
-constexpr double kShareInView = 0.5;
 
 struct Candidate {
   Similarity pose;
@@ -199,9 +199,12 @@ void check_found(const FoundPose& found) {
 FoundPose find_pose(const std::vector<const shape::StructureModel*>& bones,
                     const std::vector<PreparedImage>& images, const SegmentOptions& options,
                     const Monitor& monitor) {
-  const PoseScore few(bones, images.front(), kSmoothing, kProbes),
-      many(bones, images.front(), kSmoothing, kManyProbes);
   const Volume& volume = images.front().volume;
+  PreparedImage image = images.front();
+  image.volume = smoothed(volume, kSmoothing);
+  const Volume coarse = resampled_isotropic(image.volume, kVoxelShare * kSmoothing);
+  const PoseScore few(bones, coarse, image.intensity_range, kSmoothing, kProbes),
+      many(bones, coarse, image.intensity_range, kSmoothing, kManyProbes);
   std::vector<Candidate> candidates = all_candidates(volume);
   require(!candidates.empty(), "the image is too small to look for a hip in");
   const auto update_all = [&](const auto& update) {
@@ -215,8 +218,6 @@ FoundPose find_pose(const std::vector<const shape::StructureModel*>& bones,
   update_all([&](Candidate& c) { c = improved(c, many, volume); });
   candidates = best_apart(std::move(candidates), kFitted);
 
-  PreparedImage image = images.front();
-  image.volume = smoothed(image.volume, kSmoothing);
   FoundPose found;
   found.score = -kInfinity;
   std::vector<std::pair<Vec3, double>> results;

@@ -16,13 +16,13 @@ constexpr int kRounds = 12;
 constexpr double kReach = 6.0;
 
 /// One pass over all vertices. @returns how many had to move
-Index pushed(TriMesh& mesh, const std::vector<TriangleTree>& trees,
-             const std::vector<Obstacle>& obstacles) {
+Index pushed(TriMesh& mesh, const std::vector<Obstacle>& obstacles) {
   std::vector<char> moved(static_cast<std::size_t>(mesh.n_vertices()), 0);
   parallel_for(mesh.n_vertices(), [&](Index v) {
     Vec3 p = mesh.points.row(v);
-    for (std::size_t o = 0; o < trees.size(); ++o) {
-      if (push_out(p, trees[o], obstacles[o].gap, kReach)) moved[static_cast<std::size_t>(v)] = 1;
+    for (const Obstacle& obstacle : obstacles) {
+      if (push_out(p, *obstacle.surface, obstacle.gap, kReach))
+        moved[static_cast<std::size_t>(v)] = 1;
     }
     mesh.points.row(v) = p;
   });
@@ -43,11 +43,9 @@ bool push_out(Vec3& p, const TriangleTree& tree, double gap, double reach) {
 }
 
 void update_clear(TriMesh& mesh, const std::vector<Obstacle>& obstacles) {
-  std::vector<TriangleTree> trees;
-  for (const Obstacle& o : obstacles) trees.emplace_back(o.mesh->points, o.mesh->triangles);
   bool whole = false;
   for (int round = 0; round < kRounds; ++round) {
-    const Index moved = pushed(mesh, trees, obstacles);
+    const Index moved = pushed(mesh, obstacles);
     whole = update_unfolded(mesh);
     if (moved == 0 && whole) return;
   }

@@ -7,9 +7,9 @@
 
 namespace coxa::shape {
 
-/// A closed surface and how far others keep from it.
+/// A closed surface, which must outlive this, and how far others keep from it.
 struct Obstacle {
-  const TriMesh* mesh = nullptr;
+  const TriangleTree* surface = nullptr;
   double gap = 0.0;  ///< mm
 };
 

@@ -3,6 +3,7 @@
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
 #include <coxa/geom/triangle_tree.h>
+#include <coxa/mesh/triangle_list.h>
 
 #include <algorithm>
 #include <array>
@@ -59,6 +60,7 @@ class HeadRadius {
     }
     return radius;
   }
+  const std::vector<TriangleTree>& parts() const { return trees_; }
 
  private:
   const SocketRim& rim_;
@@ -154,10 +156,7 @@ TriMesh tube(const std::vector<Section>& sections) {
         triangles.push_back({at(ring, k), at(ring, k + 1), middle});
     }
   }
-  mesh.triangles.resize(static_cast<Index>(triangles.size()), 3);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k)
-      mesh.triangles(static_cast<Index>(t), k) = triangles[t][static_cast<std::size_t>(k)];
+  mesh.triangles = triangles_from(triangles);
   return mesh;
 }
 
@@ -178,12 +177,13 @@ void check(const LabrumOptions& options) {
 }
 
 /// The tube, kept out of what is around it.
-TriMesh clear_tube(const std::vector<Section>& sections, const TriMesh& hip_bone,
-                   const TriMesh& cartilage, const std::vector<TriMesh>& head,
-                   const LabrumOptions& options) {
+TriMesh clear_tube(const std::vector<Section>& sections, const Ring& ring,
+                   const TriMesh& cartilage) {
   TriMesh mesh = tube(sections);
-  std::vector<Obstacle> obstacles{{&hip_bone, options.seat}, {&cartilage, options.seat}};
-  for (const TriMesh& part : head) obstacles.push_back({&part, options.gap});
+  const TriangleTree cartilage_tree(cartilage.points, cartilage.triangles);
+  std::vector<Obstacle> obstacles{{&ring.bone, ring.options.seat},
+                                  {&cartilage_tree, ring.options.seat}};
+  for (const TriangleTree& part : ring.head.parts()) obstacles.push_back({&part, ring.options.gap});
   update_clear(mesh, obstacles);
   return mesh;
 }
@@ -213,7 +213,7 @@ TriMesh make_labrum(const SocketRim& rim, const TriMesh& hip_bone, const TriMesh
     sections[static_cast<std::size_t>(i)] =
         ring.section(std::fmod(begin + s * span, 12.0), kEndShare + (1.0 - kEndShare) * end);
   });
-  return clear_tube(sections, hip_bone, cartilage, head, options);
+  return clear_tube(sections, ring, cartilage);
 }
 
 TriMesh make_transverse_ligament(const SocketRim& rim, const TriMesh& hip_bone,
@@ -239,7 +239,7 @@ TriMesh make_transverse_ligament(const SocketRim& rim, const TriMesh& hip_bone,
           (articular ? least : std::max(place[1], least)) * rim.direction(hour, place[0]);
     }
   });
-  return clear_tube(sections, hip_bone, cartilage, head, options);
+  return clear_tube(sections, ring, cartilage);
 }
 
 }  // namespace coxa::shape

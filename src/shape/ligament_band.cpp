@@ -1,6 +1,7 @@
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
 #include <coxa/geom/triangle_tree.h>
+#include <coxa/mesh/triangle_list.h>
 #include <coxa/shape/ligaments.h>
 
 #include <algorithm>
@@ -160,10 +161,7 @@ TriMesh closed_band(const Sheet& sheet, const std::vector<double>& half) {
     wall(sheet.at(0, k + 1), sheet.at(0, k));
     wall(sheet.at(last_fibre, k), sheet.at(last_fibre, k + 1));
   }
-  mesh.triangles.resize(static_cast<Index>(triangles.size()), 3);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t c = 0; c < 3; ++c)
-      mesh.triangles(static_cast<Index>(t), static_cast<Index>(c)) = triangles[t][c];
+  mesh.triangles = triangles_from(triangles);
   return mesh;
 }
 
@@ -174,14 +172,12 @@ TriMesh make_ligament(const LigamentSite& site, const Vec3& head_centre,
   require(site.origin.size() >= 2 && site.origin.size() == site.insertion.size(),
           "a ligament needs as many fibres at its insertion as at its origin, and two at least");
   std::vector<TriangleTree> trees;
-  std::vector<Obstacle> obstacles;
-  for (const TriMesh& mesh : firm) {
-    trees.emplace_back(mesh.points, mesh.triangles);
-    obstacles.push_back({&mesh, kGap});
-  }
+  for (const TriMesh& mesh : firm) trees.emplace_back(mesh.points, mesh.triangles);
   Sheet sheet = first_sheet(site, head_centre);
   update_tight(sheet, trees, 0.5 * site.thickness + kGap);
   TriMesh band = closed_band(sheet, half_thickness(sheet, trees, 0.5 * site.thickness));
+  std::vector<Obstacle> obstacles;
+  for (const TriangleTree& tree : trees) obstacles.push_back({&tree, kGap});
   update_clear(band, obstacles);
   return band;
 }

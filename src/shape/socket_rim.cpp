@@ -3,6 +3,7 @@
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
 #include <coxa/geom/fits.h>
+#include <coxa/geom/median.h>
 #include <coxa/geom/triangle_tree.h>
 #include <coxa/mesh/vertex_normals.h>
 
@@ -42,12 +43,11 @@ Points facing(const TriMesh& mesh, const Vec3& place) {
 int wrapped(int i) { return ((i % kHours) + kHours) % kHours; }
 double hour_of(int i) { return 12.0 * i / kHours; }
 
-double median(std::vector<double> values) {
+/// NaN where no value is known.
+double median_of_known(std::vector<double> values) {
   std::erase_if(values, [](double v) { return v != v; });
   if (values.empty()) return kNaN;
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
+  return median(Eigen::Map<const VecX>(values.data(), static_cast<Index>(values.size())));
 }
 
 /// Heights at which a ray from the centre is asked how far the surface is, and the answers (NaN:
@@ -74,7 +74,7 @@ double end_of(const std::vector<double>& distances) {
     }
     if (before.size() > kWallSamples) {
       const std::vector<double> along(before.end() - kWallSamples, before.end() - kWallSamples / 3);
-      if (distances[k] > median(along) + kShoulder) break;
+      if (distances[k] > median_of_known(along) + kShoulder) break;
     }
     before.push_back(distances[k]);
     last = h;
@@ -93,7 +93,7 @@ std::vector<double> horizons(const TriMesh& mesh, const SocketRim& rim) {
 
 /// Where the cartilage's border is near the edge; runs shorter than half an hour are closed.
 std::vector<bool> covered_hours(const SocketRim& rim) {
-  const double usual = median(rim.height);
+  const double usual = median_of_known(rim.height);
   std::vector<bool> covered(kHours);
   for (int i = 0; i < kHours; ++i) {
     const auto k = static_cast<std::size_t>(i);
