@@ -19,7 +19,9 @@ namespace {
 constexpr double kSharpAngle = 0.5;       // rad: edges bent this much hardly bind their triangles
 constexpr double kRegularisation = 1e-6;  // of the mean diagonal: keeps the factor definite
 constexpr int kInverseIterations = 25;
-constexpr Index kMostFactored = 60000;  // triangles
+// triangles; a thick body's ties across it fill the factor, a sheet's do not
+constexpr Index kMostFactored = 60000, kMostOfThick = 10000;
+constexpr double kThick = 0.15;  // relative thickness; that of cartilage is about 0.05
 
 // signed Laplacian: along the surface neighbours agree, across the body they are opposite
 Eigen::SparseMatrix<double> signed_laplacian(const Geometry& g,
@@ -70,11 +72,11 @@ VecX lowest_mode(const Eigen::SparseMatrix<double>& L, const VecX& areas) {
 
 // the mode of a coarser surface, evened by relaxation: a factor would take minutes
 VecX mode_from_coarser(const TriMesh& surface, const Geometry& g,
-                       const Eigen::SparseMatrix<double>& L, double thickness) {
+                       const Eigen::SparseMatrix<double>& L, double thickness, Index most) {
   constexpr int kRelaxations = 30;
   constexpr double kOutward = 0.25;  // of the thickness: what is nearest then is on the same face
-  const TriMesh coarse = decimate(surface, {.n_triangles = kMostFactored / 2});
-  if (coarse.n_triangles() > kMostFactored)
+  const TriMesh coarse = decimate(surface, {.n_triangles = most / 2});
+  if (coarse.n_triangles() > most)
     fail(ErrorCode::bad_mesh, "a surface of ", surface.n_triangles(),
          " triangles cannot be made coarser, to be split into two faces");
   const Geometry coarse_geometry = triangle_geometry(coarse);
@@ -157,12 +159,17 @@ double median_thickness(const VecX& areas, const std::vector<Opposite>& opposite
   return 0.0;
 }
 
+double relative_thickness(double thickness, const VecX& areas) {
+  return thickness / std::sqrt(0.5 * areas.sum());
+}
+
 VecX signed_mode(const TriMesh& surface, const std::vector<SharedEdge>& edges, const Geometry& g,
                  const std::vector<Opposite>& opposites) {
   const auto L = signed_laplacian(g, edges, surface.points, opposites);
-  return surface.n_triangles() <= kMostFactored
-             ? lowest_mode(L, g.areas)
-             : mode_from_coarser(surface, g, L, median_thickness(g.areas, opposites));
+  const double thickness = median_thickness(g.areas, opposites);
+  const Index most = relative_thickness(thickness, g.areas) > kThick ? kMostOfThick : kMostFactored;
+  return surface.n_triangles() <= most ? lowest_mode(L, g.areas)
+                                       : mode_from_coarser(surface, g, L, thickness, most);
 }
 
 }  // namespace coxa::medial

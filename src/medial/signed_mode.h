@@ -36,6 +36,9 @@ std::vector<Opposite> find_opposites(const TriMesh& surface, const Geometry& g);
 /// Median over the area of the distance to the opposite triangle, where the two face each other.
 double median_thickness(const VecX& areas, const std::vector<Opposite>& opposites);
 
+/// Thickness over the square root of half the area.
+double relative_thickness(double thickness, const VecX& areas);
+
 /// The function on the triangles that varies least along the surface, may jump at sharp edges, and
 /// takes opposite values across the body: lowest eigenvector of a signed Laplacian. Surfaces of
 /// many triangles get that of a coarser one, relaxed.

@@ -50,10 +50,6 @@ bool may_be_partner(const Opposite& o, double reach) {
   return o.triangle >= 0 && o.facing > kFacing && o.distance <= reach;
 }
 
-double relative_thickness(double thickness, const VecX& areas) {
-  return thickness / std::sqrt(0.5 * areas.sum());
-}
-
 struct Pairing {
   const VecX& x;  // the signed mode
   const std::vector<Opposite>& opposites;
