@@ -1,7 +1,8 @@
 // A long random walk through the hip's range: how often a pose converges, whether anything is ever
 // inverted, and how deep the cartilages overlap. Usage: joint_poses JOINT.toml [--poses 10000]
-// [--seed 1] [--step 6]
+// [--seed 1] [--step 6] [--threads N]
 #include <coxa/core/error.h>
+#include <coxa/core/parallel.h>
 #include <coxa/core/rng.h>
 #include <coxa/joint/simulate.h>
 #include <coxa/pipeline/joint_stage.h>
@@ -93,7 +94,8 @@ struct Tally {
 
 int main(int argc, char** argv) {
   try {
-    require(argc > 1, "usage: joint_poses JOINT.toml [--poses N] [--seed N] [--step DEG]");
+    require(argc > 1,
+            "usage: joint_poses JOINT.toml [--poses N] [--seed N] [--step DEG] [--threads N]");
     int poses = 10000, seed = 1;
     double step = 6.0;
     for (int k = 2; k + 1 < argc; k += 2) {
@@ -101,6 +103,7 @@ int main(int argc, char** argv) {
       if (word == "--poses") poses = std::stoi(argv[k + 1]);
       if (word == "--seed") seed = std::stoi(argv[k + 1]);
       if (word == "--step") step = std::stod(argv[k + 1]);
+      if (word == "--threads") set_thread_count(std::stoi(argv[k + 1]));
     }
     const auto request = pipeline::read_joint_request(argv[1]);
     const joint::JointModel model = pipeline::read_joint_model(

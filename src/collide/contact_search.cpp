@@ -101,10 +101,10 @@ void SurfaceContact::note_unpaired(std::size_t s, const Vec3& point,
 
 /// Searches for what a sample at `point` faces, and notes what the next search wants to know.
 std::optional<ContactPair> SurfaceContact::find_pair(Index sample, const Vec3& point,
-                                                     const Vec3& normal) {
+                                                     const Vec3& normal, SearchHint hint) {
   const auto s = static_cast<std::size_t>(sample);
-  const OtherSurface other{*tree_, other_normals_, boundary_edge_, boundary_vertex_};
-  const SampleSearch search = find_faced_point(other, point, normal, nearest_[s], options_);
+  const OtherSurface other{*tree_, other_normals_, other_neighbours_, boundary_vertex_};
+  const SampleSearch search = find_faced_point(other, point, normal, nearest_[s], hint, options_);
   if (!search.faced) {
     const auto nearest =
         search.nearest ? search.nearest
@@ -144,6 +144,7 @@ void SurfaceContact::update_pairs(const VecX& x, double reach, double slide) {
   if (!cut) update_clearances(slave.points, slide);
   const std::vector<char> wanted = cut ? std::vector<char>() : owners_within(reach);
   const std::vector<Index> chosen = samples_of(wanted);
+  const SearchHint hint = slide == 1.0 ? SearchHint::bounds : SearchHint::followed;
   std::vector<std::optional<ContactPair>> found(chosen.size());
   parallel_for(static_cast<std::int64_t>(chosen.size()), [&](Index k) {
     const auto at = static_cast<std::size_t>(k);
@@ -156,7 +157,7 @@ void SurfaceContact::update_pairs(const VecX& x, double reach, double slide) {
     }
     const Vec3 normal =
         (at_vertices ? vertex_normal : facet_normals.row(sample.triangle).transpose()).normalized();
-    found[at] = find_pair(chosen[at], point, normal);
+    found[at] = find_pair(chosen[at], point, normal, hint);
   });
 
   pairs_.clear();

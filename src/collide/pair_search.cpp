@@ -17,6 +17,8 @@ constexpr double kBorderShare = 1e-3;
 constexpr double kFarthestMiss = 0.5;
 // distances below this have no direction of their own, mm
 constexpr double kTouching = 1e-9;
+// edges crossed on the way to the nearest triangle before all are searched
+constexpr int kLongestWalk = 4;
 
 Vec3 corner(const OtherSurface& other, Index triangle, int k) {
   return other.tree.points().row(other.tree.triangles()(triangle, k)).transpose();
@@ -44,7 +46,7 @@ bool on_border(const OtherSurface& other, const NearestPoint& nearest) {
       return true;
     }
     // edge k joins corners k and k+1: the third weight is zero on it
-    if (nearest.barycentric[(k + 2) % 3] == 0.0 && other.boundary_edge(nearest.triangle, k)) {
+    if (nearest.barycentric[(k + 2) % 3] == 0.0 && other.neighbours(nearest.triangle, k) < 0) {
       return true;
     }
   }
@@ -99,22 +101,51 @@ FacedPoint along_smooth_normal(const OtherSurface& other, const Vec3& point,
   return faced;
 }
 
-/// How far the nearest point can be: no farther than that of the triangle that was nearest before.
-double search_limit(const OtherSurface& other, const Vec3& point, Index hint,
-                    const ContactOptions& options) {
-  if (hint < 0) return options.search_distance;
-  const double squared = closest_point_on_triangle(point, corner(other, hint, 0),
-                                                   corner(other, hint, 1), corner(other, hint, 2))
-                             .squared_distance;
-  // a little farther, because the search rounds
-  return std::min(options.search_distance, std::sqrt(squared) * (1.0 + 1e-9) + kTouching);
+NearestPoint nearest_on(const OtherSurface& other, Index triangle, const Vec3& point) {
+  const TrianglePoint on = closest_point_on_triangle(
+      point, corner(other, triangle, 0), corner(other, triangle, 1), corner(other, triangle, 2));
+  return {triangle, on.point, on.barycentric, on.squared_distance};
+}
+
+/// From triangle to triangle across the edge that is nearest, up to one that is nearest inside.
+std::optional<NearestPoint> walk(const OtherSurface& other, const Vec3& point, NearestPoint at) {
+  for (int step = 0; step < kLongestWalk; ++step) {
+    int across = -1, edges = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (at.barycentric[k] != 0.0) continue;
+      across = (k + 1) % 3;  // the edge opposite to corner k
+      ++edges;
+    }
+    if (edges == 0) return at;
+    const Index next = edges == 1 ? other.neighbours(at.triangle, across) : -1;
+    if (next < 0) break;
+    const double before = at.squared_distance;
+    at = nearest_on(other, next, point);
+    if (!(at.squared_distance < before)) break;
+  }
+  return std::nullopt;
+}
+
+/// The nearest point of the other surface, or by a walk from the triangle that was nearest before.
+std::optional<NearestPoint> find_nearest(const OtherSurface& other, const Vec3& point, Index before,
+                                         SearchHint hint, const ContactOptions& options) {
+  if (before < 0) return other.tree.nearest_within(point, options.search_distance);
+  const NearestPoint first = nearest_on(other, before, point);
+  if (hint == SearchHint::followed) {
+    const auto found = walk(other, point, first);
+    if (found && found->squared_distance <= options.search_distance * options.search_distance)
+      return found;
+  }
+  // no farther than that triangle; a little more, because the search rounds
+  const double bound = std::sqrt(first.squared_distance) * (1.0 + 1e-9) + kTouching;
+  return other.tree.nearest_within(point, std::min(options.search_distance, bound));
 }
 
 }  // namespace
 
 SampleSearch find_faced_point(const OtherSurface& other, const Vec3& point, const Vec3& normal,
-                              Index hint, const ContactOptions& options) {
-  const auto nearest = other.tree.nearest_within(point, search_limit(other, point, hint, options));
+                              Index before, SearchHint hint, const ContactOptions& options) {
+  const auto nearest = find_nearest(other, point, before, hint, options);
   if (!nearest) return {};
   const double distance = std::sqrt(nearest->squared_distance);
   const auto not_faced = [&]() -> SampleSearch {

@@ -10,7 +10,7 @@ namespace coxa::collide {
 struct OtherSurface {
   const TriangleTree& tree;
   const Points& vertex_normals;  ///< V×3, unit
-  const Eigen::Matrix<bool, Eigen::Dynamic, 3, Eigen::RowMajor>& boundary_edge;
+  const Triangles& neighbours;   ///< across the edges, -1: border
   const std::vector<bool>& boundary_vertex;
 };
 
@@ -29,10 +29,17 @@ struct SampleSearch {
   bool outside = true;                  ///< of the other surface; told of what is not faced
 };
 
+/// How a search makes use of the triangle that was nearest before.
+enum class SearchHint {
+  bounds,   ///< it bounds the search, whose answer is the nearest point of all
+  followed  ///< the answer is the nearest point that a walk from there over the edges leads to; the
+            ///< nearest of all where the walk leads to no triangle's inside
+};
+
 /// What a sample at `point` with outward normal `normal` faces.
-/// @param hint  triangle that was nearest before, or -1: changes the cost, not the answer
+/// @param before  triangle that was nearest before, or -1
 SampleSearch find_faced_point(const OtherSurface& other, const Vec3& point, const Vec3& normal,
-                              Index hint, const ContactOptions& options);
+                              Index before, SearchHint hint, const ContactOptions& options);
 
 /// How far the smooth surface stands out from each edge of each triangle: the patch over a triangle
 /// is higher than the facet by the sum of bulge times both corners' weights, over its edges (edge k

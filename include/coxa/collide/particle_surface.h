@@ -34,8 +34,8 @@ ParticleSurface make_particle_surface(const SimplexMesh& mesh, Index first_parti
 /// Vertex positions, V×3 mm, for particle positions x (3n values).
 Points surface_points(const ParticleSurface& surface, const VecX& x);
 
-/// Whether each of the three edges of each triangle (edge k joins corners k and k+1) has no second
-/// triangle.
-Eigen::Matrix<bool, Eigen::Dynamic, 3, Eigen::RowMajor> boundary_edges(const Triangles& triangles);
+/// The triangle on the other side of each of the three edges of each triangle (edge k joins corners
+/// k and k+1), -1 where there is none; the lowest of them where there are several.
+Triangles edge_neighbours(const Triangles& triangles);
 
 }  // namespace coxa::collide

@@ -48,6 +48,8 @@ struct ContactOptions {
   ContactRule rule = ContactRule::pointwise;
 };
 
+enum class SearchHint;  // pair_search.h
+
 /// A slave sample and the point of the other surface that it faces.
 struct ContactPair {
   Index sample = 0;
@@ -106,7 +108,8 @@ class SurfaceContact : public dynamics::Force {
   ///
   /// With `slide` in (0, 1) the way of two paired surfaces across their normal counts for so much
   /// only: their gap is taken not to change faster than that along them. Fewer are searched, and
-  /// what a steeper place brings near is found a step late.
+  /// what a steeper place brings near is found a step late. Those are looked for from the triangle
+  /// that was nearest before, across its edges: the nearest place thereabouts, not of all.
   void update_pairs(const VecX& x, double reach = kInfinity, double slide = 1.0);
   /// Makes the next search look at every sample, whatever was known of its clearance.
   void forget_clearances();
@@ -157,7 +160,8 @@ class SurfaceContact : public dynamics::Force {
   std::vector<Index> samples_of(const std::vector<char>& wanted) const;
   void note_unpaired(std::size_t sample, const Vec3& point,
                      const std::optional<NearestPoint>& nearest, bool outside);
-  std::optional<ContactPair> find_pair(Index sample, const Vec3& point, const Vec3& normal);
+  std::optional<ContactPair> find_pair(Index sample, const Vec3& point, const Vec3& normal,
+                                       SearchHint hint);
   double clearance(const ContactPair& pair, const Vec3& point, double distance) const;
   void append_entries(const ContactPair& pair, double share, Entries& entries) const;
   void append_constraint(ContactConstraint constraint, Entries& entries);
@@ -183,7 +187,7 @@ class SurfaceContact : public dynamics::Force {
   std::vector<double> stiffening_;     ///< per owner, >= 1
   std::vector<double> overlap_;        ///< per owner, mm, at the last update of multipliers
   std::optional<TriangleTree> tree_;
-  Eigen::Matrix<bool, Eigen::Dynamic, 3, Eigen::RowMajor> boundary_edge_;
+  Triangles other_neighbours_;  ///< across the edges of the other surface, -1: border
   std::vector<bool> boundary_vertex_;
   std::vector<ContactPair> pairs_;  ///< ascending sample
   std::vector<ContactConstraint> constraints_;
