@@ -5,7 +5,8 @@ usage: evaluate_meshing.py --coxa build/release/coxa [--shared ../shared] [--lay
                            [--work DIR] [--seconds N] [--all-cartilages | --bodies | --labels | --table] [SURFACE …]
 
 --bodies: bones, muscles, ligaments, labra and the cartilages other than libhip's, each at the size that coxa chooses; --labels: the
-largest piece of every label of ../shared/data/labels, its surface by marching cubes, evened.  Every outcome is kept in DIR beside
+largest piece of every label of ../shared/data/labels, its surface by marching cubes, evened.  Where a surface was repaired, the
+envelope error against the repaired surface is told too.  Every outcome is kept in DIR beside
 the mesh; --table meshes nothing and shows all kept outcomes by class of body.
 
 Figures by ../shared/eval/mesh_quality.py; time is processor time of `coxa mesh`, so that neighbours on the machine do not count,
@@ -132,8 +133,15 @@ def figures_of(judge, mesh, surface, repaired):
     envelope = judge.to_polydata(points, facets)
     of_truth = judge.samples(truth)
     there = judge.distances(outside(of_truth, envelope) if repaired else of_truth, envelope)
-    back = judge.distances(judge.samples(envelope), truth)
-    return {"tets": len(tets), "aspect_mean": aspect.mean(), "aspect_p05": np.percentile(aspect, 5), "aspect_min": aspect.min(),
+    of_envelope = judge.samples(envelope)
+    back = judge.distances(of_envelope, truth)
+    filled = {}
+    kept = mesh.with_name(mesh.stem + "_repaired.ply")
+    if repaired and kept.exists():
+        new = judge.read_surface(str(kept))
+        both = np.concatenate([judge.distances(judge.samples(new), envelope), judge.distances(of_envelope, new)])
+        filled = {"filled_rms": np.sqrt(np.mean(both ** 2)), "filled_max": both.max()}
+    return {**filled, "tets": len(tets), "aspect_mean": aspect.mean(), "aspect_p05": np.percentile(aspect, 5), "aspect_min": aspect.min(),
             "dihedral_min": dihedral.min(), "dihedral_max": dihedral.max(), "inverted": (volumes <= 0).sum(),
             "envelope_rms": np.sqrt(np.mean(np.concatenate([there, back]) ** 2)), "envelope_max": max(there.max(), back.max()),
             "manifold": int((counts == 2).all() and oriented)}
@@ -220,7 +228,9 @@ def main():
         over = missed(figures, limits, 0)
         failures += bool(over)
         print(f"{name:34s}", " ".join(text_of(k, figures[k]) for k in limits), "|", " ".join(over) or "none", "|",
-              " ".join(k for k in missed(figures, limits, 1) if k not in over) or "none", "| repaired" if repaired else "", flush=True)
+              " ".join(k for k in missed(figures, limits, 1) if k not in over) or "none", "| repaired," if repaired else "",
+              f"to the repaired surface {figures['filled_rms']:.3f} {figures['filled_max']:.3f}" if "filled_rms" in figures else "",
+              flush=True)
     if rows:
         for k, (_, _, more) in limits.items():
             values = [r[k] for r in rows]
