@@ -39,14 +39,12 @@ class Compacting : public Material {
 
   void energies_with_piolas(const LaneMat3& F, LaneMat3& P, double* energy) const override {
     law_->energies_with_piolas(F, P, energy);
-    if (least_determinant(F) >= compaction_.volume_ratio) return;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const Mat3 own = matrix_of(F, lane);
-      Mat3 stress = matrix_of(P, lane);
-      add_piola(own, stress);
-      set_matrix(P, lane, stress);
-      energy[lane] += 0.5 * compaction_.bulk * excess(own) * excess(own);
-    }
+    compact(F, P, energy);
+  }
+  void energies_with_known_rotations(const LaneMat3& F, const LaneMat3& R, LaneMat3& P,
+                                     double* energy) const override {
+    law_->energies_with_known_rotations(F, R, P, energy);
+    compact(F, P, energy);
   }
 
   // d(-bulk e C) = bulk C (C : dF) - bulk e dC, with e = J0 - J and C = dJ/dF; the first part is
@@ -91,6 +89,16 @@ class Compacting : public Material {
  private:
   double excess(const Mat3& F) const {
     return std::max(0.0, compaction_.volume_ratio - F.determinant());
+  }
+  void compact(const LaneMat3& F, LaneMat3& P, double* energy) const {
+    if (least_determinant(F) >= compaction_.volume_ratio) return;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Mat3 own = matrix_of(F, lane);
+      Mat3 stress = matrix_of(P, lane);
+      add_piola(own, stress);
+      set_matrix(P, lane, stress);
+      energy[lane] += 0.5 * compaction_.bulk * excess(own) * excess(own);
+    }
   }
   void add_piola(const Mat3& F, Mat3& P) const {
     if (const double e = excess(F); e > 0.0) P -= compaction_.bulk * e * cofactor(F);

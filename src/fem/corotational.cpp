@@ -60,6 +60,11 @@ class Corotational : public PrincipalMaterial {
     }
   }
 
+  void energies_with_known_rotations(const LaneMat3& F, const LaneMat3& R, LaneMat3& P,
+                                     double* energy) const override {
+    corotational_response(lame_, F, R, P, energy);
+  }
+
   // dP = 2 mu dF + lambda (R : dF) R + turning dR, where for dF = d r_b
   // dR r_a = [q_a]x G [q_b]x^T d with q = R r, G = (tr(V) I - V)^-1 and F = V R. With
   // [a]x [b]x^T = (a.b) I - b a^T the linear law in turned axes is split off; what is left,

@@ -163,4 +163,9 @@ void Material::energies_with_piolas(const LaneMat3& F, LaneMat3& P, double* ener
   }
 }
 
+void Material::energies_with_known_rotations(const LaneMat3& F, const LaneMat3&, LaneMat3& P,
+                                             double* energy) const {
+  energies_with_piolas(F, P, energy);
+}
+
 }  // namespace coxa::fem

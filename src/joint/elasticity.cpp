@@ -55,9 +55,15 @@ CartilageElasticity::CartilageElasticity(const TetMesh& mesh, Index first_partic
 }
 
 double CartilageElasticity::add_force_with_energy(const VecX& x, VecX& force) const {
-  double energy = by_element_->add_force_with_energy(x, force);
-  if (by_patch_) energy += by_patch_->add_force_with_energy(x, force);
-  return energy;
+  return by_patch_ ? by_patch_->add_force_with_energy(x, by_element_->material(), force)
+                   : by_element_->add_force_with_energy(x, force);
+}
+
+void CartilageElasticity::add_element_jacobian(const VecX& x, solve::BlockMatrix& A) const {
+  if (by_patch_)
+    by_patch_->add_element_jacobian(x, by_element_->material(), A);
+  else
+    by_element_->add_jacobian(x, VecX(), 1.0, 0.0, A);
 }
 
 void CartilageElasticity::add_patch_stress(const VecX& x, std::vector<Mat3>& cauchy_stress) const {

@@ -17,6 +17,9 @@ class CartilageElasticity {
 
   /// Adds the forces and returns the energy, N·mm; infinite where the law forbids x.
   double add_force_with_energy(const VecX& x, VecX& force) const;
+  /// Adds the part of the Jacobian that couples the nodes of single elements; the rest is the
+  /// `patch_terms` of by_patch.
+  void add_element_jacobian(const VecX& x, solve::BlockMatrix& A) const;
   /// What resists volume change by patches; null: nothing does.
   const fem::MeanDilatation* by_patch() const { return by_patch_.get(); }
   /// The law without what acts by patches: strains come from here.

@@ -1,5 +1,6 @@
 #include "hip_system.h"
 
+#include <coxa/dynamics/system.h>
 #include <coxa/geom/fits.h>
 #include <coxa/mesh/measures.h>
 #include <coxa/mesh/tet_quality.h>
@@ -224,30 +225,35 @@ std::vector<collide::SurfaceContact> HipSystem::make_labrum_contacts(double stif
   return contacts;
 }
 
-std::vector<const dynamics::Force*> HipSystem::elastic() const {
-  std::vector<const dynamics::Force*> forces{&socket_elasticity_.by_element(),
-                                             &femur_elasticity_.by_element()};
-  if (labrum_) forces.push_back(&labrum_->elasticity().by_element());
+std::vector<const CartilageElasticity*> HipSystem::bodies() const {
+  std::vector<const CartilageElasticity*> bodies{&socket_elasticity_, &femur_elasticity_};
+  if (labrum_) bodies.push_back(&labrum_->elasticity());
+  return bodies;
+}
+
+std::vector<std::pair<Index, Index>> HipSystem::elastic_pattern() const {
+  std::vector<const dynamics::Force*> forces;
+  for (const CartilageElasticity* body : bodies()) forces.push_back(&body->by_element());
   if (ligaments_) forces.push_back(&*ligaments_);
-  return forces;
+  return dynamics::total_pattern(forces);
+}
+
+void HipSystem::add_elastic_jacobian(const VecX& x, solve::BlockMatrix& A) const {
+  for (const CartilageElasticity* body : bodies()) body->add_element_jacobian(x, A);
+  if (ligaments_) ligaments_->add_jacobian(x, VecX(), 1.0, 0.0, A);
 }
 
 std::vector<const fem::MeanDilatation*> HipSystem::patches() const {
   std::vector<const fem::MeanDilatation*> patches;
-  const auto add = [&](const CartilageElasticity& body) {
-    if (body.by_patch() != nullptr) patches.push_back(body.by_patch());
-  };
-  add(socket_elasticity_);
-  add(femur_elasticity_);
-  if (labrum_) add(labrum_->elasticity());
+  for (const CartilageElasticity* body : bodies())
+    if (body->by_patch() != nullptr) patches.push_back(body->by_patch());
   return patches;
 }
 
 VecX HipSystem::elastic_force(const VecX& x, double& energy) const {
   VecX force = VecX::Zero(x.size());
-  energy = socket_elasticity_.add_force_with_energy(x, force);
-  energy += femur_elasticity_.add_force_with_energy(x, force);
-  if (labrum_) energy += labrum_->elasticity().add_force_with_energy(x, force);
+  energy = 0.0;
+  for (const CartilageElasticity* body : bodies()) energy += body->add_force_with_energy(x, force);
   if (ligaments_) {
     ligaments_->add_force(x, VecX(), force);
     energy += ligaments_->energy(x);

@@ -48,11 +48,13 @@ class HipSystem {
 
   /// @param reach  how far the head may move, mm: bone farther than that is left out
   HipContact make_contact(double stiffness, double reach) const;
-  /// Forces of cartilages, labrum and ligaments, without what resists volume change by patches,
-  std::vector<const dynamics::Force*> elastic() const;
-  /// and that.
+  /// Blocks of the elastic Jacobian: of cartilages, labrum and ligaments.
+  std::vector<std::pair<Index, Index>> elastic_pattern() const;
+  /// Adds it at x, but for the `patch_terms` of what resists volume change by patches,
+  void add_elastic_jacobian(const VecX& x, solve::BlockMatrix& A) const;
+  /// which is this.
   std::vector<const fem::MeanDilatation*> patches() const;
-  /// Sum of both at x on all particles, N; sets their energy, N·mm.
+  /// Sum of all elastic forces at x on all particles, N; sets their energy, N·mm.
   VecX elastic_force(const VecX& x, double& energy) const;
   const fem::ElasticForce& socket_elasticity() const { return socket_elasticity_.by_element(); }
   const fem::ElasticForce& femur_elasticity() const { return femur_elasticity_.by_element(); }
@@ -73,6 +75,7 @@ class HipSystem {
   std::optional<collide::SurfaceContact> make_bone_contact(double stiffness, double reach) const;
   std::optional<collide::SurfaceContact> make_femur_contact(double stiffness) const;
   std::vector<collide::SurfaceContact> make_labrum_contacts(double stiffness) const;
+  std::vector<const CartilageElasticity*> bodies() const;
   void add_bare_femur();
   void add_ligaments();
   Index first_femur_point() const { return translation() + 1; }

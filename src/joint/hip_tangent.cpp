@@ -2,7 +2,6 @@
 
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
-#include <coxa/dynamics/system.h>
 
 #include <Eigen/LU>
 #include <cmath>
@@ -16,7 +15,7 @@ constexpr int kMaxIterations = 3000;
 
 HipTangent::HipTangent(std::vector<bool> free, const HipSystem& system)
     : free_(std::move(free)), compact_(free_.size(), 0) {
-  const auto elastic_pattern = dynamics::total_pattern(system.elastic());
+  const auto elastic_pattern = system.elastic_pattern();
   full_ = solve::BlockMatrix(static_cast<Index>(free_.size()), elastic_pattern);
   for (std::size_t i = 0; i < free_.size(); ++i) {
     if (!free_[i]) continue;
@@ -42,68 +41,101 @@ HipTangent::HipTangent(std::vector<bool> free, const HipSystem& system)
 }
 
 void HipTangent::update_elastic(const HipSystem& system, const VecX& x) {
-  dynamics::assemble(system.elastic(), x, VecX::Zero(x.size()), 1.0, 0.0, full_);
-  patch_terms_.clear();
+  full_.set_zero();
+  system.add_elastic_jacobian(x, full_);
+  patches_.clear();
   for (const fem::MeanDilatation* patches : system.patches()) {
-    patches->add_element_jacobian(x, full_);
-    patch_terms_.push_back(patches->patch_terms(x));
+    const fem::PatchTerms terms = patches->patch_terms(x);
+    for (std::size_t k = 0; k < terms.stiffness.size(); ++k) {
+      const auto first = static_cast<std::size_t>(terms.start[k]);
+      add_row(patches_, terms.stiffness[k], &terms.particle[first], &terms.slope[first],
+              static_cast<Index>(terms.start[k + 1] - terms.start[k]));
+    }
   }
+  patches_.index_by_particle(particle_.size());
   parallel_for(static_cast<std::int64_t>(source_.size()), [&](Index slot) {
     const auto s = static_cast<std::size_t>(slot);
     elastic_.blocks()[s] = full_.blocks()[static_cast<std::size_t>(source_[s])];
   });
 }
 
-void HipTangent::add_row(double stiffness, const Index* particle, const Vec3* slope, Index n) {
-  Row row{stiffness, static_cast<Index>(row_particle_.size()), 0};
+void HipTangent::Terms::clear() {
+  rows.clear();
+  particle.clear();
+  slope.clear();
+}
+
+void HipTangent::Terms::index_by_particle(std::size_t n_free) {
+  row_force.assign(rows.size(), 0.0);
+  use_start.assign(n_free + 1, 0);
+  for (const Index i : particle) ++use_start[static_cast<std::size_t>(i) + 1];
+  for (std::size_t i = 0; i < n_free; ++i) use_start[i + 1] += use_start[i];
+  use_row.resize(particle.size());
+  use_slope.resize(particle.size());
+  std::vector<Index> next(use_start.begin(), use_start.end() - 1);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (Index k = rows[r].first; k < rows[r].last; ++k) {
+      const auto free = static_cast<std::size_t>(particle[static_cast<std::size_t>(k)]);
+      const auto at = static_cast<std::size_t>(next[free]++);
+      use_row[at] = static_cast<Index>(r);
+      use_slope[at] = slope[static_cast<std::size_t>(k)];
+    }
+  }
+}
+
+void HipTangent::Terms::add_diagonal(std::size_t free, Mat3& block) const {
+  for (Index u = use_start[free]; u < use_start[free + 1]; ++u) {
+    const Vec3& own = use_slope[static_cast<std::size_t>(u)];
+    const Row& row = rows[static_cast<std::size_t>(use_row[static_cast<std::size_t>(u)])];
+    block += row.stiffness * own * own.transpose();
+  }
+}
+
+void HipTangent::Terms::update_forces(const VecX& z) const {
+  parallel_for(static_cast<std::int64_t>(rows.size()), [&](Index r) {
+    const Row& row = rows[static_cast<std::size_t>(r)];
+    double closing = 0.0;
+    for (Index k = row.first; k < row.last; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      closing += slope[at].dot(z.segment<3>(3 * particle[at]));
+    }
+    row_force[static_cast<std::size_t>(r)] = row.stiffness * closing;
+  });
+}
+
+Vec3 HipTangent::Terms::force(std::size_t free) const {
+  Vec3 sum = Vec3::Zero();
+  for (Index u = use_start[free]; u < use_start[free + 1]; ++u) {
+    const auto at = static_cast<std::size_t>(u);
+    sum += row_force[static_cast<std::size_t>(use_row[at])] * use_slope[at];
+  }
+  return sum;
+}
+
+void HipTangent::add_row(Terms& terms, double stiffness, const Index* particle, const Vec3* slope,
+                         Index n) const {
+  Terms::Row row{stiffness, static_cast<Index>(terms.particle.size()), 0};
   for (Index k = 0; k < n; ++k) {
     const auto i = static_cast<std::size_t>(particle[k]);
     if (!free_[i]) continue;
-    row_particle_.push_back(compact_[i]);
-    row_slope_.push_back(slope[k]);
+    terms.particle.push_back(compact_[i]);
+    terms.slope.push_back(slope[k]);
   }
-  row.last = static_cast<Index>(row_particle_.size());
-  rows_.push_back(row);
+  row.last = static_cast<Index>(terms.particle.size());
+  terms.rows.push_back(row);
 }
 
 void HipTangent::update_contact(const HipContact& hip, const VecX& x) {
-  rows_.clear();
-  row_particle_.clear();
-  row_slope_.clear();
-  for (const fem::PatchTerms& terms : patch_terms_) {
-    for (std::size_t k = 0; k < terms.stiffness.size(); ++k) {
-      const auto first = static_cast<std::size_t>(terms.start[k]);
-      add_row(terms.stiffness[k], &terms.particle[first], &terms.slope[first],
-              static_cast<Index>(terms.start[k + 1] - terms.start[k]));
-    }
-  }
+  contact_.clear();
   hip.for_each_constraint([&](const auto& contact, const auto& constraint) {
     if (contact.pressure(constraint, x) == 0.0) return;
     const auto first = static_cast<std::size_t>(constraint.first);
-    add_row(contact.stiffness(constraint) * constraint.area, &contact.stencil_particles()[first],
-            &contact.stencil_vectors()[first], constraint.last - constraint.first);
+    add_row(contact_, contact.stiffness(constraint) * constraint.area,
+            &contact.stencil_particles()[first], &contact.stencil_vectors()[first],
+            constraint.last - constraint.first);
   });
-  row_force_.assign(rows_.size(), 0.0);
-  index_rows_by_particle();
+  contact_.index_by_particle(particle_.size());
   update_preconditioner();
-}
-
-/// The rows' entries by particle, so that products gather in a fixed order.
-void HipTangent::index_rows_by_particle() {
-  use_start_.assign(particle_.size() + 1, 0);
-  for (const Index i : row_particle_) ++use_start_[static_cast<std::size_t>(i) + 1];
-  for (std::size_t i = 0; i < particle_.size(); ++i) use_start_[i + 1] += use_start_[i];
-  use_row_.resize(row_particle_.size());
-  use_slope_.resize(row_particle_.size());
-  std::vector<Index> next(use_start_.begin(), use_start_.end() - 1);
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
-    for (Index k = rows_[r].first; k < rows_[r].last; ++k) {
-      const auto particle = static_cast<std::size_t>(row_particle_[static_cast<std::size_t>(k)]);
-      const auto at = static_cast<std::size_t>(next[particle]++);
-      use_row_[at] = static_cast<Index>(r);
-      use_slope_[at] = row_slope_[static_cast<std::size_t>(k)];
-    }
-  }
 }
 
 void HipTangent::update_preconditioner() {
@@ -111,11 +143,8 @@ void HipTangent::update_preconditioner() {
   parallel_for(static_cast<std::int64_t>(particle_.size()), [&](Index i) {
     const auto p = static_cast<std::size_t>(i);
     Mat3 block = elastic_.blocks()[static_cast<std::size_t>(elastic_.slot(i, i))];
-    for (Index u = use_start_[p]; u < use_start_[p + 1]; ++u) {
-      const Row& row = rows_[static_cast<std::size_t>(use_row_[static_cast<std::size_t>(u)])];
-      const Vec3& slope = use_slope_[static_cast<std::size_t>(u)];
-      block += row.stiffness * slope * slope.transpose();
-    }
+    patches_.add_diagonal(p, block);
+    contact_.add_diagonal(p, block);
     // a particle that nothing holds in some direction stays where it is in that direction
     block.diagonal().array() += 1e-9 * block.trace() + 1e-12;
     inverse_diagonal_[p] = block.inverse();
@@ -123,24 +152,12 @@ void HipTangent::update_preconditioner() {
 }
 
 void HipTangent::multiply(const VecX& z, VecX& y) const {
-  parallel_for(static_cast<std::int64_t>(rows_.size()), [&](Index r) {
-    const Row& row = rows_[static_cast<std::size_t>(r)];
-    double closing = 0.0;
-    for (Index k = row.first; k < row.last; ++k) {
-      closing += row_slope_[static_cast<std::size_t>(k)].dot(
-          z.segment<3>(3 * row_particle_[static_cast<std::size_t>(k)]));
-    }
-    row_force_[static_cast<std::size_t>(r)] = row.stiffness * closing;
-  });
+  patches_.update_forces(z);
+  contact_.update_forces(z);
   elastic_.multiply(z, y);
   parallel_for(static_cast<std::int64_t>(particle_.size()), [&](Index i) {
     const auto p = static_cast<std::size_t>(i);
-    Vec3 sum = Vec3::Zero();
-    for (Index u = use_start_[p]; u < use_start_[p + 1]; ++u) {
-      const auto at = static_cast<std::size_t>(u);
-      sum += row_force_[static_cast<std::size_t>(use_row_[at])] * use_slope_[at];
-    }
-    y.segment<3>(3 * i) += sum;
+    y.segment<3>(3 * i) += patches_.force(p) + contact_.force(p);
   });
 }
 

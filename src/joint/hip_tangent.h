@@ -30,12 +30,30 @@ class HipTangent {
   SolveReport solve(const VecX& residual, double tolerance, VecX& step) const;
 
  private:
-  struct Row {          // a term stiffness * slope slope^T
-    double stiffness;   // of contact: penalty times area, N/mm
-    Index first, last;  // range in row_particle_
+  /// Terms stiffness * slope slope^T, and their entries by particle, so that products gather in a
+  /// fixed order.
+  struct Terms {
+    struct Row {
+      double stiffness;   // of contact: penalty times area, N/mm
+      Index first, last;  // range in particle and slope
+    };
+    std::vector<Row> rows;
+    std::vector<Index> particle;  // free numbers
+    std::vector<Vec3> slope;
+    std::vector<Index> use_start;  // per free particle: its uses by rows
+    std::vector<Index> use_row;
+    std::vector<Vec3> use_slope;
+    mutable std::vector<double> row_force;  // scratch of update_forces
+
+    void clear();
+    void index_by_particle(std::size_t n_free);
+    void add_diagonal(std::size_t free, Mat3& block) const;
+    void update_forces(const VecX& z) const;
+    /// Of the terms at the z of update_forces.
+    Vec3 force(std::size_t free) const;
   };
-  void add_row(double stiffness, const Index* particle, const Vec3* slope, Index n);
-  void index_rows_by_particle();
+  void add_row(Terms& terms, double stiffness, const Index* particle, const Vec3* slope,
+               Index n) const;
   void update_preconditioner();
   void multiply(const VecX& z, VecX& y) const;
   VecX preconditioned(const VecX& r) const;
@@ -46,14 +64,7 @@ class HipTangent {
   solve::BlockMatrix full_, elastic_;
   std::vector<std::int64_t> source_;  // slot in full_ for every slot of elastic_
 
-  std::vector<fem::PatchTerms> patch_terms_;
-  std::vector<Row> rows_;
-  std::vector<Index> row_particle_;  // free numbers
-  std::vector<Vec3> row_slope_;
-  std::vector<Index> use_start_;  // per free particle: its uses by rows
-  std::vector<Index> use_row_;
-  std::vector<Vec3> use_slope_;
-  mutable std::vector<double> row_force_;  // scratch of multiply
+  Terms patches_, contact_;
   std::vector<Mat3> inverse_diagonal_;
 };
 

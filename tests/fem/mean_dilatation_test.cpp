@@ -95,6 +95,29 @@ TEST(MeanDilatation, PartsOfItsJacobianMakeTheWhole) {
       EXPECT_LE((got - wanted).norm(), 1e-12 * wanted.norm());
     }
 }
+TEST(MeanDilatation, WithTheLawBesideItIsTheSumOfBoth) {
+  for (const Dilatation dilatation : kAll)
+    for (const int nodes : {4, 10}) {
+      const TetMesh mesh = some_mesh(nodes);
+      const MeanDilatation patches = patches_of(mesh, 20.0, dilatation, Tangent::positive);
+      const ElasticForce law(mesh, make_compacting(law_of(dilatation, {0.0, 5.0}), {0.9, 100.0}),
+                             {}, {.axes = {}, .tangent = Tangent::positive});
+      const VecX x = shaken_positions(mesh, 0.03), z = shaken_positions(mesh, 1.0);
+      VecX apart = VecX::Zero(x.size()), together = apart;
+      const double energy =
+          law.add_force_with_energy(x, apart) + patches.add_force_with_energy(x, apart);
+      EXPECT_NEAR(patches.add_force_with_energy(x, law.material(), together), energy,
+                  1e-12 * energy);
+      EXPECT_LE((together - apart).norm(), 1e-12 * apart.norm());
+      solve::BlockMatrix A(mesh.n_vertices(), law.pattern()), B = A;
+      law.add_jacobian(x, VecX(), 1.0, 0.0, A);
+      patches.add_element_jacobian(x, A);
+      patches.add_element_jacobian(x, law.material(), B);
+      A.multiply(z, apart);
+      B.multiply(z, together);
+      EXPECT_LE((together - apart).norm(), 1e-12 * apart.norm());
+    }
+}
 TEST(MeanDilatation, PositiveTangentLeavesOutWhatPressureTakes) {
   const TetMesh mesh = some_mesh(4);
   for (const Dilatation dilatation : {Dilatation::stretch_sum, Dilatation::green_trace})

@@ -40,6 +40,9 @@ class Material {
   /// Both for four deformation gradients at once; sets four energy densities. Laws that can work on
   /// them side by side do.
   virtual void energies_with_piolas(const LaneMat3& F, LaneMat3& P, double* energy) const;
+  /// The same where the rotations R of F = R S are known.
+  virtual void energies_with_known_rotations(const LaneMat3& F, const LaneMat3& R, LaneMat3& P,
+                                             double* energy) const;
   /// dP/dF, 9×9 over the columns of F one after the other: entry (a + 3k, b + 3l) is dP_ak / dF_bl.
   virtual Mat9 tangent(const Mat3& F, Tangent kind) const = 0;
   /// Adds the blocks of an element's stiffness at one point: factor * r_a : tangent : r_b to block

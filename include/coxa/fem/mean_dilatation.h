@@ -58,10 +58,15 @@ class MeanDilatation : public dynamics::Force {
   double energy(const VecX& x) const override;
   /// Adds the force and returns the energy, for little more than the force alone costs.
   double add_force_with_energy(const VecX& x, VecX& force) const;
+  /// Likewise with what the law beside it resists with by elements, in one pass over them: what
+  /// both need is worked out once. World axes.
+  double add_force_with_energy(const VecX& x, const Material& beside, VecX& force) const;
 
   /// The Jacobian in two parts, for iterative solvers: what couples the nodes of one element only,
   /// added to a matrix with the pattern of the elements,
   void add_element_jacobian(const VecX& x, solve::BlockMatrix& A) const;
+  /// the same with the law beside it,
+  void add_element_jacobian(const VecX& x, const Material& beside, solve::BlockMatrix& A) const;
   /// and a term stiffness * slope slope^T for each patch.
   PatchTerms patch_terms(const VecX& x) const;
 
