@@ -116,7 +116,7 @@ class Maker {
     for (const char* name : kHosts) firm.push_back(&hip_[name]);
     double deepest = 0.0;
     for (auto& [name, mesh] : made)
-      deepest = std::max(deepest, segment::update_parted({&mesh}, firm));
+      deepest = std::max(deepest, segment::update_parted({{&mesh}}, firm));
     return deepest;
   }
 

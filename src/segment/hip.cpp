@@ -60,6 +60,9 @@ constexpr double kDoubtfulBone = 0.65, kNarrowShare = 2.0 / 3.0;
 /// mm, of the places where dark lines lie.
 constexpr double kDrawnNoise = 1.0;
 
+/// mm, that cartilage may enter what it lies on without a word.
+constexpr double kDeepestLeft = 0.05;
+
 double mean_confidence(const std::vector<Body>& bodies) {
   double sum = 0.0;
   for (const Body& body : bodies) sum += quality_of(body).confidence;
@@ -263,7 +266,7 @@ std::vector<Surface> Hip::surfaces(std::vector<std::string>& warnings) const {
   for (std::size_t s = 0; s < bodies_.size(); ++s) {
     if (!hosts_[s]) continue;
     TriMesh *layer = &surfaces[s].mesh, *host = &surfaces[*hosts_[s]].mesh;
-    layers.push_back({layer, host});
+    layers.push_back({layer, host, models_[s]->n_bone_side});
     if (models_[s]->n_bone_side == 0) continue;
     sided.push_back({layer, host, models_[s]->n_bone_side});
     names.push_back(models_[s]->name);
@@ -277,7 +280,9 @@ std::vector<Surface> Hip::surfaces(std::vector<std::string>& warnings) const {
                                                        " % of covered and bare bone apart");
     warnings.push_back("the rims and thickness of the " + names[l] + " are the atlas's: " + why);
   }
-  lay_on_hosts(layers, options_.minimum_gap);
+  const double depth = lay_on_hosts(layers, options_.minimum_gap);
+  if (depth > kDeepestLeft)
+    warnings.push_back(join_text("cartilage enters its neighbours by up to ", depth, " mm"));
   return surfaces;
 }
 

@@ -4,6 +4,7 @@
 #include <coxa/geom/triangle_tree.h>
 #include <coxa/mesh/unfold.h>
 #include <coxa/mesh/vertex_normals.h>
+#include <coxa/segment/part_bodies.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +20,11 @@ constexpr double kSeat = 0.05;
 constexpr double kFloating = 0.3;
 // layers and bones farther than this are not each other's neighbours, mm
 constexpr double kReach = 12.0, kLayerReach = 4.0;
+
+// laid layers enter their hosts and each other by less than a millimetre, between vertices; pushed
+// 0.03 mm clear on a lattice of points they do not between these either
+constexpr Parting kParting{
+    .gap = 0.03, .tolerance = 0.01, .deepest = 1.5, .reach = 1.5, .near = 0.3};
 
 /// Where each vertex of a layer stands on its host.
 struct Footing {
@@ -91,9 +97,19 @@ double allowed(double own, double other, double room) {
   return std::max(0.0, room) * own / (own + other);
 }
 
+double part_layers(const std::vector<LaidLayer>& layers) {
+  std::vector<SoftBody> soft;
+  std::vector<const TriMesh*> firm;
+  for (const LaidLayer& l : layers) {
+    soft.push_back({l.layer, l.n_bone_side});
+    if (std::find(firm.begin(), firm.end(), l.host) == firm.end()) firm.push_back(l.host);
+  }
+  return update_parted(soft, firm, kParting);
+}
+
 }  // namespace
 
-void lay_on_hosts(std::vector<LaidLayer>& layers, double gap) {
+double lay_on_hosts(std::vector<LaidLayer>& layers, double gap) {
   std::vector<Footing> footings;
   std::vector<ThicknessAt> thickness;
   std::vector<TriangleTree> hosts;
@@ -124,6 +140,7 @@ void lay_on_hosts(std::vector<LaidLayer>& layers, double gap) {
     layers[l].layer->points = laid[l];
     update_unfolded(*layers[l].layer);
   }
+  return part_layers(layers);
 }
 
 }  // namespace coxa::segment

@@ -121,7 +121,7 @@ void lay_layers(SurfaceSet& surfaces, const std::map<std::string, std::string>& 
   std::vector<LaidLayer> layers;
   for (const auto& [layer, host] : host_of) {
     if (surfaces.contains(layer) && surfaces.contains(host))
-      layers.push_back({&surfaces.at(layer).mesh, &surfaces.at(host).mesh});
+      layers.push_back({&surfaces.at(layer).mesh, &surfaces.at(host).mesh, 0});
   }
   lay_on_hosts(layers, gap);
 }

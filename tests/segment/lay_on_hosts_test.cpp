@@ -1,7 +1,11 @@
 #include <coxa/segment/lay_on_hosts.h>
 
+#include <coxa/geom/triangle_tree.h>
+#include <coxa/mesh/surface_distance.h>
+#include <coxa/mesh/validate.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/shapes.h"
@@ -17,7 +21,7 @@ double mean_radius(const Points& points) { return points.rowwise().norm().mean()
 class LayOnHosts : public ::testing::Test {
  protected:
   void lay(double gap) {
-    std::vector<LaidLayer> layers{{&inner_, &ball_}, {&outer_, &cup_}};
+    std::vector<LaidLayer> layers{{&inner_, &ball_, 0}, {&outer_, &cup_, 0}};
     lay_on_hosts(layers, gap);
   }
   Index half() const { return inner_.n_vertices() / 2; }
@@ -48,10 +52,32 @@ TEST_F(LayOnHosts, LeavesTheFarSideWhereThereIsRoom) {
 }
 TEST_F(LayOnHosts, BringsAFloatingLayerDown) {
   inner_ = shell(21.0, 22.0);
-  std::vector<LaidLayer> layers{{&inner_, &ball_}};
+  std::vector<LaidLayer> layers{{&inner_, &ball_, 0}};
   lay_on_hosts(layers, 0.0);
   // its own thickness, and the third of a millimetre that a height is believed beyond it
   EXPECT_NEAR(mean_radius(inner_.points.bottomRows(half())), 20.05 + 1.3, 0.02);
+}
+TEST_F(LayOnHosts, TakesTrianglesOutOfWhatTheyCut) {
+  // large triangles of a sheet of 0.15 mm cut 0.3 mm off the ball between their corners
+  TriMesh coarse =
+      test::together(test::turned_over(test::icosphere(2, 20.05)), test::icosphere(2, 20.2));
+  const auto depth_of = [](const TriMesh& mesh, const TriMesh& other) {
+    const TriangleTree tree(other.points, other.triangles);
+    const Points points = sample_surface(mesh, 20000, 3);
+    double deepest = 0.0;
+    for (const auto& p : points.rowwise())
+      deepest = std::max(deepest, -tree.signed_distance(p.transpose()));
+    return deepest;
+  };
+  ASSERT_GT(depth_of(coarse, ball_), 0.2);
+  std::vector<LaidLayer> layers{{&coarse, &ball_, coarse.n_triangles() / 2}};
+  EXPECT_LE(lay_on_hosts(layers, 0.0), 0.01);
+  EXPECT_LE(depth_of(coarse, ball_), 0.05);
+  EXPECT_LE(depth_of(ball_, coarse), 0.05);
+  EXPECT_TRUE(self_intersections(coarse).empty());
+  const Index n = coarse.n_vertices() / 2;
+  EXPECT_NEAR(mean_radius(coarse.points.bottomRows(n)) - mean_radius(coarse.points.topRows(n)),
+              0.15, 0.03);
 }
 
 }  // namespace coxa::segment

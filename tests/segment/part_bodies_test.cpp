@@ -35,7 +35,7 @@ TEST(PartBodies, PartsSoftOnesHalfWayAndNeverMovesFirmOnes) {
   }();
   ASSERT_GT(depth_in(left, right), 1.5);
   ASSERT_GT(depth_in(left, below), 1.0);
-  EXPECT_LE(update_parted({&left, &right}, {&below}), 0.02);
+  EXPECT_LE(update_parted({{&left}, {&right}}, {&below}), 0.02);
   for (const TriMesh* mesh : {&left, &right}) {
     EXPECT_TRUE(validate(*mesh).valid()) << validate(*mesh).text();
     EXPECT_LT(depth_in(*mesh, below), 0.05);
@@ -49,15 +49,15 @@ TEST(PartBodies, PartsSoftOnesHalfWayAndNeverMovesFirmOnes) {
 TEST(PartBodies, LeavesWhatIsApart) {
   TriMesh left = ball_at(-11.0, 10.0), right = ball_at(11.0, 10.0);
   const Points before = left.points;
-  EXPECT_EQ(update_parted({&left, &right}, {}), 0.0);
+  EXPECT_EQ(update_parted({{&left}, {&right}}, {}), 0.0);
   EXPECT_EQ(left.points, before);
 }
 TEST(PartBodies, IsTheSameForOneAndEightThreads) {
   TriMesh a = ball_at(-9.0, 10.0), b = ball_at(9.0, 10.0), c = a, d = b;
   set_thread_count(1);
-  update_parted({&a, &b}, {});
+  update_parted({{&a}, {&b}}, {});
   set_thread_count(8);
-  update_parted({&c, &d}, {});
+  update_parted({{&c}, {&d}}, {});
   EXPECT_EQ(a.points, c.points);
   EXPECT_EQ(b.points, d.points);
 }
