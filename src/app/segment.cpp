@@ -2,6 +2,7 @@
 #include <coxa/pipeline/segment_stage.h>
 #include <coxa/pipeline/structures.h>
 #include <coxa/pipeline/surface_stage.h>
+#include <coxa/shape/hip_structures.h>
 
 #include "commands.h"
 
@@ -21,7 +22,7 @@ pipeline::SurfaceRequest surface_request(const SegmentArguments& arguments) {
   pipeline::SurfaceRequest request;
   request.side = arguments.side == "left" ? Side::left : Side::right;
   request.structures = pipeline::structures_from(arguments.structures);
-  for (const char* name : {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"}) {
+  for (const char* name : shape::kHipStructures) {
     const std::filesystem::path folder = arguments.surfaces;
     for (const char* extension : {".ply", ".stl", ".vtp", ".obj"}) {
       if (!request.surfaces.contains(name) &&

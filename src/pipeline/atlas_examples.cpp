@@ -4,6 +4,7 @@
 #include <coxa/io/surfaces.h>
 #include <coxa/mesh/mirrored.h>
 #include <coxa/motion/joint_centre.h>
+#include <coxa/shape/hip_structures.h>
 
 #include <algorithm>
 #include <set>
@@ -15,8 +16,6 @@ namespace coxa::pipeline {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kStructures[] = {"femur", "hip_bone", "femoral_cartilage",
-                                       "acetabular_cartilage"};
 // a scan's cut is flat: vertices this near to the lowest one of a femur are its cap, mm
 constexpr double kCapHeight = 2.5;
 // a femur that reaches less far below its head than this ends in a cut, not in a knee, mm
@@ -50,7 +49,7 @@ std::vector<fs::path> subfolders(const fs::path& folder) {
 ScannedHip read_hip(const std::string& set, const std::string& subject, const fs::path& folder,
                     Side side) {
   ScannedHip hip{set, subject, side, {}, {}, {}};
-  for (const char* structure : kStructures) {
+  for (const char* structure : shape::kHipStructures) {
     const fs::path path = folder / (std::string(structure) + ".ply");
     const bool cartilage = std::string(structure).find("_cartilage") != std::string::npos;
     if (!fs::exists(path) || (cartilage && set == kOddCartilages)) continue;

@@ -3,6 +3,7 @@
 #include <coxa/core/error.h>
 #include <coxa/image/phantom.h>
 #include <coxa/mesh/simplex_mesh.h>
+#include <coxa/shape/hip_structures.h>
 #include <coxa/shape/profiles.h>
 #include <coxa/shape/virtual_hip.h>
 
@@ -36,7 +37,7 @@ Contrast contrast_named(const std::string& name) {
 
 std::vector<TissueSurface> tissues_of(const shape::VirtualHip& hip) {
   std::vector<TissueSurface> tissues;
-  for (const char* name : {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"}) {
+  for (const char* name : shape::kHipStructures) {
     const TriMesh& mesh = hip.at(name);
     const bool bone = std::string(name).find("cartilage") == std::string::npos;
     TissueSurface tissue{

@@ -12,6 +12,7 @@
 #include <coxa/pipeline/label_map.h>
 #include <coxa/pipeline/structures.h>
 #include <coxa/segment/pins.h>
+#include <coxa/shape/hip_structures.h>
 
 #include <algorithm>
 
@@ -22,8 +23,6 @@ namespace coxa::pipeline {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kStructures[] = {"femur", "hip_bone", "femoral_cartilage",
-                                       "acetabular_cartilage"};
 // what lies on what
 const std::map<std::string, std::string> kHosts{{"femoral_cartilage", "femur"},
                                                 {"acetabular_cartilage", "hip_bone"}};
@@ -100,7 +99,7 @@ segment::SegmentOptions options_of_search(segment::SegmentOptions options) {
   auto& names = options.structures;
   if (generic_among(names).empty()) return options;
   std::erase_if(names, is_generic);
-  for (const char* needed : kStructures) {
+  for (const char* needed : shape::kHipStructures) {
     if (std::find(names.begin(), names.end(), needed) == names.end()) names.emplace_back(needed);
   }
   return options;
@@ -261,7 +260,7 @@ void add_thickness(SurfaceSet& surfaces) {
 
 SurfaceSet read_surfaces(const fs::path& folder) {
   SurfaceSet surfaces;
-  for (const char* name : kStructures) {
+  for (const char* name : shape::kHipStructures) {
     const fs::path path = folder / (std::string(name) + ".vtp");
     if (fs::exists(path)) surfaces[name] = io::read_surface_with_fields(path);
   }

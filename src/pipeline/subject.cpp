@@ -3,6 +3,7 @@
 #include <coxa/core/error.h>
 #include <coxa/io/config.h>
 #include <coxa/pipeline/structures.h>
+#include <coxa/shape/hip_structures.h>
 
 #include <cstdlib>
 
@@ -40,7 +41,7 @@ std::map<std::string, fs::path> read_surface_paths(const io::Table& root) {
   std::map<std::string, fs::path> surfaces;
   const auto table = root.find_table("surfaces");
   if (!table) return surfaces;
-  for (const char* name : {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"})
+  for (const char* name : shape::kHipStructures)
     surfaces[name] = existing(*table, name, table->find_path(name));
   table->finish();
   return surfaces;

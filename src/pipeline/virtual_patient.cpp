@@ -9,6 +9,7 @@
 #include <coxa/io/volumes.h>
 #include <coxa/pipeline/stage.h>
 #include <coxa/shape/build_atlas.h>
+#include <coxa/shape/hip_structures.h>
 
 namespace coxa::pipeline {
 namespace fs = std::filesystem;
@@ -34,7 +35,7 @@ TriMesh in_scanner(TriMesh mesh, Side side) {
 
 std::vector<TissueSurface> tissues(const shape::VirtualHip& hip, const Vec3& head) {
   std::vector<TissueSurface> list;
-  for (const char* name : {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"}) {
+  for (const char* name : shape::kHipStructures) {
     const auto it = hip.find(name);
     if (it == hip.end()) continue;
     const TriMesh& mesh = it->second;

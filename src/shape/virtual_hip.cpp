@@ -14,6 +14,7 @@
 #include <cmath>
 
 #include <coxa/mesh/unfold.h>
+#include <coxa/shape/hip_structures.h>
 #include "cartilage_sheet.h"
 #include "random_field.h"
 
@@ -216,8 +217,7 @@ VirtualHip mean_hip(const Atlas& atlas) {
 
 VirtualHip draw_virtual_hip(const Atlas& atlas, Rng& rng, const VirtualHipOptions& options) {
   check(options);
-  for (const char* name : {"femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"})
-    structure(atlas, name);
+  for (const char* name : kHipStructures) structure(atlas, name);
   for (int draw = 0; draw < kDraws; ++draw) {
     DrawnHip hip = draw_once(atlas, rng, options);
     update_joint_fit(hip, options.least_gap);
