@@ -1,6 +1,9 @@
 #include "node_freedom.h"
 
+#include <coxa/geom/triangle_tree.h>
+
 #include <algorithm>
+#include <cmath>
 
 namespace coxa::meshing {
 namespace {
@@ -30,11 +33,15 @@ void let_go(TetGrid& grid, Index v, double reach) {
   grid.reach[at(v)] = std::max(grid.reach[at(v)], reach);
 }
 
-double largest_departure(const TetGrid& grid, const SlideGuide& guide) {
+double largest_departure(const TetGrid& grid, const SlideGuide& guide, const TriMesh& surface) {
+  const TriangleTree tree(surface.points, surface.triangles);
   double largest = 0.0;
   for (std::size_t v = 0; v < grid.x.size(); ++v) {
-    if (grid.reach[v] > 0.0 && !grid.around[v].empty())
-      largest = std::max(largest, (grid.x[v] - guide.place(grid.kinds[v], grid.x[v])).norm());
+    if (grid.reach[v] <= 0.0 || grid.around[v].empty()) continue;
+    const Vec3& p = grid.x[v];
+    const double own = (p - guide.place(grid.kinds[v], p)).norm();
+    if (own > largest)
+      largest = std::max(largest, std::min(own, std::sqrt(tree.nearest(p).squared_distance)));
   }
   return largest;
 }

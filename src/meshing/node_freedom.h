@@ -1,5 +1,7 @@
 #pragma once
 
+#include <coxa/mesh/tri_mesh.h>
+
 #include "slide_guide.h"
 #include "tet_grid.h"
 
@@ -18,7 +20,8 @@ Vec3 allowed_place(const TetGrid& grid, const SlideGuide& guide, Index v, const 
 /// Lets a node go `reach` mm away from where its kind keeps it; corners become border nodes.
 void let_go(TetGrid& grid, Index v, double reach);
 
-/// mm: how far the nodes that were let go are from where their kinds would keep them, at most.
-double largest_departure(const TetGrid& grid, const SlideGuide& guide);
+/// mm: how far the nodes that were let go are from where their kinds would keep them and from the
+/// surface, at most. (A border may run elsewhere since cells were left out.)
+double largest_departure(const TetGrid& grid, const SlideGuide& guide, const TriMesh& surface);
 
 }  // namespace coxa::meshing

@@ -143,7 +143,7 @@ MeshingResult mesh_sheet(const TriMesh& surface, const medial::SurfaceSides& sid
     result.report.notes.push_back(
         join_text(dropped, " poor elements at the boundary were dropped"));
   }
-  if (const double departure = largest_departure(made.grid, guide); departure > 1e-3) {
+  if (const double departure = largest_departure(made.grid, guide, surface); departure > 1e-3) {
     result.report.notes.push_back(
         join_text("nodes left the surface by up to ", departure, " mm to make elements better"));
   }
