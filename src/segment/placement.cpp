@@ -22,6 +22,8 @@ constexpr double kLargestScale = 1.5;
 /// mm. Landmarks of a real hip fit the mean hip's within 5 to 10; an interchanged pair misses by
 /// more.
 constexpr double kLargestMisfit = 25.0;
+/// rad. Nobody lies turned so far from the frame of the atlas: head, back and left are LPS'.
+constexpr double kLargestTurn = 1.57;
 /// mm. A landmark this deep in a bone is the centre of a round end; another bone this near shares
 /// it as its socket.
 constexpr double kJointDepth = 14.0;
@@ -70,6 +72,10 @@ void check_plausible(const Matched& matched) {
   require(fit.scale < kLargestScale && fit.scale > 1.0 / kLargestScale,
           "the landmarks describe a hip ", fit.scale, " times the size of the atlas (limit ",
           kLargestScale, "); are they in mm?");
+  const double turn = rotation_vector(fit.X.R).norm();
+  require(turn < kLargestTurn, "the landmarks describe a hip turned by ", degrees(turn),
+          " degrees (limit ", degrees(kLargestTurn),
+          "); the image's axes may be wrong in its header");
   require(here <= kLargestMisfit, "the landmarks miss the atlas' by ", here,
           " mm on average (limit ", kLargestMisfit,
           "); two names may be interchanged, or the frame is not LPS");

@@ -8,6 +8,7 @@
 
 #include "hip.h"
 #include "result.h"
+#include "signal_void.h"
 
 namespace coxa::segment {
 namespace {
@@ -35,6 +36,38 @@ void check(const SegmentOptions& options) {
 constexpr double kLowConfidence = 0.4;
 /// A quality below which the whole hip is doubtful; adults in fair images have 0.55 to 0.7.
 constexpr double kDoubtfulQuality = 0.5;
+
+/// ml. Bones with so much inside that gives no signal were never met without metal in them.
+constexpr double kLargestVoid = 0.3;
+/// So many landmarks are in the image at least; others may have been set in another of the patient.
+constexpr int kLeastInImage = 3;
+
+void check_in_image(const std::vector<PreparedImage>& images, const shape::Landmarks& landmarks) {
+  int inside = 0;
+  for (const auto& [name, p] : landmarks) {
+    for (const PreparedImage& image : images) {
+      if (!in_view(image.volume, p)) continue;
+      ++inside;
+      break;
+    }
+  }
+  require(landmarks.empty() || inside >= kLeastInImage, "only ", inside, " of ", landmarks.size(),
+          " known landmarks lie in the image, and ", kLeastInImage,
+          " is the least; they belong to another image, or to another frame than LPS");
+}
+
+void warn_of_metal(const Hip& hip, const std::vector<Surface>& surfaces,
+                   std::vector<std::string>& warnings) {
+  std::vector<TriMesh> bones;
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    if (hip.is_bone(s)) bones.push_back(surfaces[s].mesh);
+  }
+  const double dark = signal_void(bones, hip.images());
+  if (dark < kLargestVoid) return;
+  warnings.push_back(join_text("low confidence: ", dark,
+                               " ml inside the bones give no signal to 6 mm around, as by metal; "
+                               "what lies about them is the shape model's"));
+}
 
 /// From each landmark to the atlas' own, at the pose of the bone that brings it nearest.
 std::map<std::string, double> landmark_distances(const Hip& hip, const shape::Atlas& atlas,
@@ -85,6 +118,7 @@ SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& optio
     result.warnings.push_back("less than half is in view of " + muscles_cut +
                               "; the rest is the shape model's");
   }
+  warn_of_metal(hip, surfaces, result.warnings);
   result.quality = n_bones > 0.0 ? bone_confidence / n_bones : 1.0;
   if (result.quality < kDoubtfulQuality) {
     result.warnings.push_back(join_text(
@@ -114,6 +148,7 @@ SegmentResult segment(const std::vector<Volume>& volumes, const shape::Atlas& at
   }
   shape::Landmarks ours = landmarks_of_side(landmarks, atlas, side);
   if (side == Side::left) ours = mirrored(ours);
+  check_in_image(images, ours);
   Hip hip(std::move(images), atlas, options);
   const double bones_and_layers = hip.has_muscles() ? 0.5 : 1.0;
   hip.segment_bones(ours, part_of(monitor, "segment bones", 0.0, 0.7 * bones_and_layers));

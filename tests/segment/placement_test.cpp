@@ -86,6 +86,12 @@ TEST(PlaceByLandmarks, RefusesTheOtherSidesLandmarks) {
   EXPECT_NE(error_of(mirrored(toy::landmarks_of({}))).find("other hip"), std::string::npos);
 }
 
+TEST(PlaceByLandmarks, RefusesAHipTurnedOver) {
+  const RigidTransform over{rotation_from_vector(Vec3(kPi, 0, 0)), Vec3(5, 6, 7)};
+  EXPECT_NE(error_of(moved(toy::landmarks_of({}), over)).find("turned by 180 degrees"),
+            std::string::npos);
+}
+
 TEST(PlaceByLandmarks, RefusesMetresAndInterchangedNames) {
   auto metres = toy::landmarks_of({});
   for (auto& [name, p] : metres) p *= 1e-3;

@@ -117,6 +117,30 @@ TEST(Segment, CompletesWhatLiesOutsideTheViewAndMarksIt) {
   EXPECT_LT(result.structures.at("egg").in_view, 0.8);
 }
 
+TEST(Segment, SaysThatThereIsNoSignalInside) {
+  Volume metal = image();
+  for (Index k = 0; k < metal.size[2]; ++k)
+    for (Index j = 0; j < metal.size[1]; ++j)
+      for (Index i = 0; i < metal.size[0]; ++i) {
+        if (metal.position(Vec3(i, j, k)).norm() < 16.0)
+          metal.values[static_cast<std::size_t>(metal.offset(i, j, k))] = 2.0F;
+      }
+  const auto says_metal = [](const std::vector<std::string>& warnings) {
+    return std::any_of(warnings.begin(), warnings.end(), [](const std::string& w) {
+      return w.find("low confidence") != std::string::npos && w.find("metal") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(says_metal(run(metal).warnings));
+  EXPECT_FALSE(says_metal(run(image()).warnings));
+}
+
+TEST(Segment, RefusesLandmarksOfAnotherImage) {
+  shape::Landmarks far = noisy_landmarks(0.0);
+  for (auto& [name, p] : far) p += Vec3(0, 0, 300);
+  EXPECT_NE(text_of_failure({image()}, far, options()).find("only 0 of 8 known landmarks lie in"),
+            std::string::npos);
+}
+
 TEST(Segment, MirroredHipGivesTheMirroredResult) {
   const SegmentResult right = run(image());
   Volume flipped = image();
