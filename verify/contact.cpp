@@ -216,7 +216,7 @@ double slide(double slope, double coefficient, double time) {
   const fem::ElasticForce elastic(mesh, fem::make_corotational(fem::lame_from(10.0, 0.3)));
   collide::SurfaceContact contact(collide::make_particle_surface(bottom), ground,
                                   {.stiffness = kStiffness, .rule = collide::ContactRule::nodal});
-  collide::ContactFriction friction(contact, coefficient, kStiffness);
+  collide::ContactFriction friction(coefficient, kStiffness);
   dynamics::Particles particles{fem::test::stacked(mesh.points), VecX::Zero(mesh.points.size()),
                                 fem::lumped_masses(mesh, kDensity, mesh.n_vertices())};
   VecX load(mesh.points.size());
@@ -232,6 +232,7 @@ double slide(double slope, double coefficient, double time) {
   for (int step = 0; step < kSteps; ++step) {
     contact.update_pairs(particles.x);
     friction.begin_step(particles.x);
+    friction.update(contact, particles.x);
     stepper.update_pattern();
     stepper.update_step(particles, {},
                         {.integrator = dynamics::Integrator::backward_euler,

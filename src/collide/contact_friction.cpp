@@ -2,29 +2,26 @@
 
 #include <coxa/core/error.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace coxa::collide {
 
-ContactFriction::ContactFriction(const SurfaceContact& contact, double coefficient,
-                                 double stiffness)
-    : contact_(contact), coefficient_(coefficient), stiffness_(stiffness) {
+ContactFriction::ContactFriction(double coefficient, double stiffness)
+    : coefficient_(coefficient), stiffness_(stiffness) {
   require(coefficient >= 0.0, "coefficient of friction must not be negative, got ", coefficient);
   require(stiffness > 0.0, "tangential stiffness must be positive (MPa/mm), got ", stiffness);
 }
 
-void ContactFriction::begin_step(const VecX& x) {
-  start_ = x;
-  update(x);
-}
+void ContactFriction::begin_step(const VecX& x) { start_ = x; }
 
-void ContactFriction::update(const VecX& x) {
+void ContactFriction::update(const SurfaceContact& contact, const VecX& x) {
   if (start_.size() != x.size()) start_ = x;
   patches_.clear();
   particles_.clear();
   weights_.clear();
-  for (const ContactConstraint& constraint : contact_.constraints()) {
-    const double pressure = contact_.pressure(constraint, x);
+  for (const ContactConstraint& constraint : contact.constraints()) {
+    const double pressure = contact.pressure(constraint, x);
     if (pressure == 0.0) continue;
     const auto owner = static_cast<std::size_t>(constraint.owner);
     if (left_.size() <= owner) left_.resize(owner + 1, Vec3::Zero());
@@ -32,19 +29,26 @@ void ContactFriction::update(const VecX& x) {
     Patch patch{constraint.owner,
                 static_cast<Index>(particles_.size()),
                 0,
+                normal,
                 Mat3::Identity() - normal * normal.transpose(),
                 constraint.area,
                 coefficient_ * pressure,
                 Vec3::Zero()};
     patch.traction = patch.tangent * left_[owner];
     for (Index k = constraint.first; k < constraint.last; ++k) {
-      particles_.push_back(contact_.stencil_particles()[static_cast<std::size_t>(k)]);
+      particles_.push_back(contact.stencil_particles()[static_cast<std::size_t>(k)]);
       // the stencil is weight times normal
-      weights_.push_back(contact_.stencil_vectors()[static_cast<std::size_t>(k)].dot(normal));
+      weights_.push_back(contact.stencil_vectors()[static_cast<std::size_t>(k)].dot(normal));
     }
     patch.last = static_cast<Index>(particles_.size());
     patches_.push_back(patch);
   }
+}
+
+void ContactFriction::forget() {
+  start_.resize(0);
+  left_.clear();
+  patches_.clear();
 }
 
 void ContactFriction::end_step(const VecX& x) {
@@ -70,6 +74,19 @@ Vec3 ContactFriction::traction(const Patch& patch, const VecX& x) const {
   const Vec3 t = trial(patch, x);
   const double size = t.norm();
   return size <= patch.limit ? t : Vec3(patch.limit / size * t);
+}
+
+/// The slope of a constraint's traction with its slip: along the trial traction, where it slides
+/// none, and across it.
+std::array<ContactFriction::Term, 2> ContactFriction::terms_of(const Patch& patch,
+                                                               const VecX& x) const {
+  const Vec3 t = trial(patch, x);
+  const double size = t.norm(), stuck = stiffness_ * patch.area;
+  const Vec3 normal = patch.normal;
+  const Vec3 along = size > 0.0 ? Vec3(t / size) : normal.unitOrthogonal();
+  const bool slides = size > patch.limit;
+  return {{{slides ? 0.0 : stuck, along},
+           {slides ? patch.limit / size * stuck : stuck, normal.cross(along)}}};
 }
 
 double ContactFriction::energy(const VecX& x) const {
@@ -117,14 +134,9 @@ void ContactFriction::add_jacobian(const VecX& x, const VecX& /*v*/, double stif
                                    double /*damping_factor*/, solve::BlockMatrix& A) const {
   if (stiffness_factor == 0.0) return;
   for (const Patch& patch : patches_) {
-    const Vec3 t = trial(patch, x);
-    const double size = t.norm();
-    Mat3 K = patch.tangent;
-    if (size > patch.limit) {
-      const Vec3 direction = t / size;
-      K = patch.limit / size * (patch.tangent - direction * direction.transpose());
-    }
-    K *= stiffness_factor * stiffness_ * patch.area;
+    Mat3 K = Mat3::Zero();
+    for (const Term& term : terms_of(patch, x))
+      K += stiffness_factor * term.stiffness * term.direction * term.direction.transpose();
     for (Index i = patch.first; i < patch.last; ++i) {
       for (Index j = patch.first; j < patch.last; ++j) {
         const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);

@@ -169,6 +169,17 @@ void fill_sectors(std::array<SectorFigures, N>& sectors, const SocketElements& e
   }
 }
 
+/// Of friction on the socket about the joint centre, N·mm.
+Vec3 friction_moment(const HipState& state, const HipSystem& system) {
+  Vec3 moment = Vec3::Zero();
+  if (!state.contact.friction()) return moment;
+  VecX force = VecX::Zero(state.x.size());
+  state.contact.friction()->add_force(state.x, VecX(), force);
+  for (Index i = 0; i < system.n_acetabular(); ++i)
+    moment += (state.x.segment<3>(3 * i) - system.centre()).cross(force.segment<3>(3 * i));
+  return moment;
+}
+
 /// Looks for the element of a cartilage that has lost most of its volume.
 void find_crushed(CrushFigures& crush, const TetMesh& mesh, const fem::ElasticForce& elasticity,
                   const VecX& x, const char* body) {
@@ -223,6 +234,8 @@ std::vector<collide::ContactSample> update_contact_figures(
   balance.labrum_reaction = reactions.labrum;
   balance.elastic_energy = equilibrium.elastic_energy(state);
   balance.contact_force = state.contact.force(state.x);
+  balance.friction_force = state.contact.friction_force(state.x);
+  balance.friction_moment = friction_moment(state, system);
   balance.force_on_bone = state.contact.force_on_bone(state.x);
   balance.force_of_femur = state.contact.force_of_femur(state.x);
   balance.force_on_labrum = state.contact.force_on_labrum(state.x);

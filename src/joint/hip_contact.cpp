@@ -17,8 +17,19 @@ Vec3 force_on_slave(const collide::SurfaceContact& contact, const VecX& x) {
 
 }  // namespace
 
+void HipContact::begin_slip(const VecX& x) {
+  if (!friction_) return;
+  friction_->end_step(x);
+  friction_->begin_step(x);
+}
+
+void HipContact::forget_slip() {
+  if (friction_) friction_->forget();
+}
+
 void HipContact::update_pairs(const VecX& x, double reach, double slide) {
   for_each(*this, [&](collide::SurfaceContact& contact) { contact.update_pairs(x, reach, slide); });
+  if (friction_) friction_->update(cartilages_, x);
 }
 
 void HipContact::forget_clearances() {
@@ -45,12 +56,13 @@ void HipContact::update_stiffness(double stiffness) {
 void HipContact::add_force(const VecX& x, VecX& force) const {
   for_each(*this,
            [&](const collide::SurfaceContact& contact) { contact.add_force(x, VecX(), force); });
+  if (friction_) friction_->add_force(x, VecX(), force);
 }
 
 double HipContact::energy(const VecX& x) const {
   double sum = 0.0;
   for_each(*this, [&](const collide::SurfaceContact& contact) { sum += contact.energy(x); });
-  return sum;
+  return friction_ ? sum + friction_->energy(x) : sum;
 }
 
 double HipContact::penetration(const VecX& x) const {
@@ -65,7 +77,13 @@ Vec3 HipContact::force(const VecX& x) const {
   return force_on_cartilage(x) + force_on_bone(x) + force_of_femur(x) + force_on_labrum(x);
 }
 
-Vec3 HipContact::force_on_cartilage(const VecX& x) const { return force_on_slave(cartilages_, x); }
+Vec3 HipContact::force_on_cartilage(const VecX& x) const {
+  return force_on_slave(cartilages_, x) + friction_force(x);
+}
+
+Vec3 HipContact::friction_force(const VecX& x) const {
+  return friction_ ? friction_->resultant(x) : Vec3(Vec3::Zero());
+}
 
 Vec3 HipContact::force_on_bone(const VecX& x) const {
   return bone_ ? Vec3(-force_on_slave(*bone_, x)) : Vec3(Vec3::Zero());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <coxa/collide/contact_friction.h>
 #include <coxa/collide/surface_contact.h>
 
 #include <optional>
@@ -15,19 +16,28 @@ class HipContact {
   /// @param bone        slave the femoral articular side, obstacle the hip bone; nullopt: no bone
   /// @param femur       slave the acetabular articular side, other the femur; nullopt: none
   /// @param labrum      slaves the soft labrum, others what of the femur it touches
+  /// @param friction    between the cartilages; nullopt: none
   HipContact(collide::SurfaceContact cartilages, std::optional<collide::SurfaceContact> bone,
              std::optional<collide::SurfaceContact> femur,
-             std::vector<collide::SurfaceContact> labrum)
+             std::vector<collide::SurfaceContact> labrum,
+             std::optional<collide::ContactFriction> friction)
       : cartilages_(std::move(cartilages)),
         bone_(std::move(bone)),
         femur_(std::move(femur)),
-        labrum_(std::move(labrum)) {}
+        labrum_(std::move(labrum)),
+        friction_(std::move(friction)) {}
 
   const collide::SurfaceContact& cartilages() const { return cartilages_; }
   const std::optional<collide::SurfaceContact>& bone() const { return bone_; }
   const std::optional<collide::SurfaceContact>& femur() const { return femur_; }
 
-  /// As of `collide::SurfaceContact`, for all.
+  const std::optional<collide::ContactFriction>& friction() const { return friction_; }
+
+  /// Slip counts from positions x on, with the tractions that friction has there.
+  void begin_slip(const VecX& x);
+  /// As if nothing had slipped yet: for a head that has just been seated.
+  void forget_slip();
+  /// As of `collide::SurfaceContact`, for all; friction is limited by the pressures at x.
   void update_pairs(const VecX& x, double reach = kInfinity, double slide = 1.0);
   void forget_clearances();
   void update_multipliers(const VecX& x, double tolerance);
@@ -46,6 +56,7 @@ class HipContact {
   Vec3 force_on_bone(const VecX& x) const;
   Vec3 force_of_femur(const VecX& x) const;
   Vec3 force_on_labrum(const VecX& x) const;
+  Vec3 friction_force(const VecX& x) const;  ///< part of that on cartilage
 
   /// Calls visit(contact, constraint) for every constraint, in a fixed order.
   template <class Visit>
@@ -83,6 +94,7 @@ class HipContact {
   collide::SurfaceContact cartilages_;
   std::optional<collide::SurfaceContact> bone_, femur_;
   std::vector<collide::SurfaceContact> labrum_;
+  std::optional<collide::ContactFriction> friction_;
 };
 
 }  // namespace coxa::joint

@@ -174,7 +174,7 @@ void HipSystem::update_pose(VecX& x, const BonePose& from, const BonePose& to) c
 
 HipContact HipSystem::make_contact(double stiffness, double reach) const {
   return {make_cartilage_contact(stiffness), make_bone_contact(stiffness, reach),
-          make_femur_contact(stiffness), make_labrum_contacts(stiffness)};
+          make_femur_contact(stiffness), make_labrum_contacts(stiffness), make_friction(stiffness)};
 }
 
 collide::SurfaceContact HipSystem::make_cartilage_contact(double stiffness) const {
@@ -210,6 +210,12 @@ std::optional<collide::SurfaceContact> HipSystem::make_femur_contact(double stif
                                   contact_options(stiffness, kBoneSearch));
   contact.update_curvature(reference());
   return contact;
+}
+
+/// As stiff against slip as contact against overlap.
+std::optional<collide::ContactFriction> HipSystem::make_friction(double stiffness) const {
+  if (model_.friction == 0.0) return std::nullopt;
+  return collide::ContactFriction(model_.friction, stiffness);
 }
 
 std::vector<collide::SurfaceContact> HipSystem::make_labrum_contacts(double stiffness) const {

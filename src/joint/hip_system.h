@@ -75,6 +75,7 @@ class HipSystem {
   std::optional<collide::SurfaceContact> make_bone_contact(double stiffness, double reach) const;
   std::optional<collide::SurfaceContact> make_femur_contact(double stiffness) const;
   std::vector<collide::SurfaceContact> make_labrum_contacts(double stiffness) const;
+  std::optional<collide::ContactFriction> make_friction(double stiffness) const;
   std::vector<const CartilageElasticity*> bodies() const;
   void add_bare_femur();
   void add_ligaments();

@@ -134,6 +134,12 @@ void HipTangent::update_contact(const HipContact& hip, const VecX& x) {
             &contact.stencil_particles()[first], &contact.stencil_vectors()[first],
             constraint.last - constraint.first);
   });
+  if (hip.friction()) {
+    hip.friction()->for_each_term(
+        x, [&](double stiffness, const Index* particle, const Vec3* slope, Index n) {
+          add_row(contact_, stiffness, particle, slope, n);
+        });
+  }
   contact_.index_by_particle(particle_.size());
   update_preconditioner();
 }

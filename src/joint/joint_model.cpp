@@ -116,6 +116,8 @@ void check_model(const JointModel& model) {
     fail(ErrorCode::bad_mesh, "the femoral cartilage's articular side faces the joint centre: ",
          "articular_side and bone_side look exchanged");
   }
+  require(model.friction >= 0.0, "the coefficient of friction must not be negative, got ",
+          model.friction);
   require(model.hip_bone.empty() == model.femur.empty(),
           "the bony limit needs both bone surfaces, or none");
   require(model.labrum.empty() || !model.femur.empty(),

@@ -82,6 +82,7 @@ FrameResult LiveHip::Impl::solve(const BonePose& target, Exactness exactness,
   bool careful = exactness == Exactness::result;
   const auto attempt = [&] {
     trial = state;
+    trial.contact.begin_slip(state.x);
     // a result does not depend on what was taken for too far to touch
     if (careful) trial.contact.forget_clearances();
     if (exactness == Exactness::by_hand) {
@@ -132,6 +133,7 @@ LiveHip::LiveHip(const JointModel& model, const LoadCase& load) {
   if (load.mode != LoadMode::force) return;
   const std::string reason = impl_->exact_equilibrium.seat(impl_->state, impl_->force);
   if (!reason.empty()) fail(ErrorCode::no_convergence, reason);
+  impl_->state.contact.forget_slip();
 }
 
 LiveHip::~LiveHip() = default;

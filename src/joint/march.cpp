@@ -39,6 +39,7 @@ Settling March::advance(HipState& state, const BonePose& target, const Vec3& for
   while (true) {
     const double next = done + step > 1.0 - 1e-9 ? 1.0 : done + step;
     HipState trial = state;
+    trial.contact.begin_slip(state.x);
     predictor_.carry(system_, trial, between(start.pose, target, next));
     const auto exactness = next == 1.0 ? Exactness::result : Exactness::on_the_way;
     Settling settling = equilibrium_.settle(trial, force, exactness, monitor);

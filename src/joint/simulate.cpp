@@ -157,7 +157,9 @@ void Simulation::run_frame(FrameResult& frame) {
     frame.reason = unseated_;
   } else {
     Settling settling = march_.advance(state_, target, force(frame.frame), monitor_);
-    if (!settling.converged && load_.mode == LoadMode::force) {
+    // with friction, equilibrium is the way's
+    const bool any_way = load_.mode == LoadMode::force && model_.friction == 0.0;
+    if (!settling.converged && any_way) {
       const int spent = settling.iterations;
       settling = march_.start_anew(state_, target, force(frame.frame), monitor_);
       settling.iterations += spent;
@@ -215,10 +217,12 @@ JointResult Simulation::run() {
   result_.clock = elements_.clock;
   result_.load_description = load_.description;
   result_.bare_bone = model_.bare_bone;
+  result_.has_friction = model_.friction > 0.0;
   result_.has_labrum = !model_.labrum.empty();
   result_.has_labrum_body = model_.labrum_body.n_tets() > 0;
   for (const Ligament& ligament : model_.ligaments) result_.ligaments.push_back(ligament.name);
   if (load_.mode == LoadMode::force) unseated_ = march_.equilibrium().seat(state_, force(0));
+  state_.contact.forget_slip();
 
   const Index n = motion_.n_frames();
   for (Index k = 0; k < n; ++k) {

@@ -24,6 +24,7 @@ Fields joint_defaults() {
           {"poisson", joint.poisson_ratio},
           {"law", joint.law},
           {"volume_change", joint.volume_change},
+          {"friction", joint.friction},
           {"bare_bone", joint.bare_bone},
           {"labrum_young_mpa", joint.labrum_modulus},
           {"labrum_poisson", joint.labrum_poisson_ratio}};

@@ -97,10 +97,11 @@ std::string cell(double value) {
   return text;
 }
 
-/// What only some models have: labrum, bare femur in contact, ligaments.
+/// What only some models have: labrum, bare femur in contact, friction, ligaments.
 std::size_t n_optional_cells(const joint::JointResult& result) {
   return (result.has_labrum ? 1 : 0) + (result.has_labrum_body ? 5 : 0) +
-         (result.bare_bone == joint::BareBone::both ? 1 : 0) + result.ligaments.size();
+         (result.bare_bone == joint::BareBone::both ? 1 : 0) + (result.has_friction ? 2 : 0) +
+         result.ligaments.size();
 }
 
 std::string optional_cells(const joint::FrameResult& f, const joint::JointResult& result) {
@@ -111,6 +112,8 @@ std::string optional_cells(const joint::FrameResult& f, const joint::JointResult
             cell(f.labrum.contact_area) + cell(f.labrum.strain) + cell(f.labrum.peak_strain_p99);
   }
   if (result.bare_bone == joint::BareBone::both) text += cell(f.balance.force_of_femur.norm());
+  if (result.has_friction)
+    text += cell(f.balance.friction_force.norm()) + cell(f.balance.friction_moment.norm());
   for (const double tension : f.ligament_tension) text += cell(tension);
   return text;
 }
@@ -136,6 +139,7 @@ std::string header(const joint::JointResult& result) {
         "labrum_strain_p99";
   }
   if (result.bare_bone == joint::BareBone::both) text += ",force_of_bare_femur_N";
+  if (result.has_friction) text += ",friction_force_N,friction_moment_Nmm";
   for (const std::string& ligament : result.ligaments) text += ",tension_" + ligament + "_N";
   return text + ",residual,iterations,seconds,reason\n";
 }

@@ -58,6 +58,7 @@ Record wanted_record(const JointRequest& request) {
     record.options["direction"] = join_text(d[0], " ", d[1], " ", d[2]);
   }
   // what is not asked for leaves no trace, so that results made before it could be are still valid
+  if (j.friction > 0.0) record.options["friction"] = j.friction;
   if (j.bare_bone != "hip_bone") record.options["bare_bone"] = j.bare_bone;
   for (const LigamentEntry& ligament : j.ligaments)
     record.options["ligament " + ligament.name] = to_toml(ligament);
@@ -191,6 +192,7 @@ joint::JointModel read_joint_model(const JointRequest& request, const motion::Bo
   model.material.volume_change = request.joint.volume_change == "patches"
                                      ? joint::VolumeChange::by_patches
                                      : joint::VolumeChange::by_elements;
+  model.friction = request.joint.friction;
   model.bare_bone =
       request.joint.bare_bone == "both" ? joint::BareBone::both : joint::BareBone::hip_bone;
   for (const LigamentEntry& entry : request.joint.ligaments) {
@@ -272,6 +274,7 @@ std::string to_toml(const JointRequest& request, const fs::path& folder) {
     text += join_text("labrum_young_mpa = ", j.labrum_modulus,
                       "\nlabrum_poisson = ", j.labrum_poisson_ratio, "\n");
   }
+  if (j.friction > 0.0) text += join_text("friction = ", j.friction, "\n");
   if (j.bare_bone != "hip_bone") text += join_text("bare_bone = \"", j.bare_bone, "\"\n");
   for (const LigamentEntry& ligament : j.ligaments) text += to_toml(ligament);
   return text;

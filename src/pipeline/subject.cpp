@@ -116,6 +116,8 @@ void check_joint(const io::Table& table, const JointEntry& joint) {
   require(joint.volume_change == "patches" || joint.volume_change == "elements",
           table.where("volume_change"), " must be \"patches\" or \"elements\", got \"",
           joint.volume_change, "\"");
+  require(joint.friction >= 0.0, table.where("friction"), " must not be negative, got ",
+          joint.friction);
   require(joint.bare_bone == "hip_bone" || joint.bare_bone == "both", table.where("bare_bone"),
           " must be \"hip_bone\" or \"both\", got \"", joint.bare_bone, "\"");
 }
@@ -176,6 +178,7 @@ JointEntry read_joint_entry(const io::Table& root) {
   joint.volume_change = table->value_or("volume_change", joint.volume_change);
   joint.labrum_modulus = table->value_or("labrum_young_mpa", joint.labrum_modulus);
   joint.labrum_poisson_ratio = table->value_or("labrum_poisson", joint.labrum_poisson_ratio);
+  joint.friction = table->value_or("friction", joint.friction);
   joint.bare_bone = table->value_or("bare_bone", joint.bare_bone);
   joint.ligaments = read_ligaments(*table);
   table->finish();

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kTable =
-    "[joint]\nbare_bone = \"both\"\n"
+    "[joint]\nbare_bone = \"both\"\nfriction = 0.02\n"
     "[[joint.ligament]]\nname = \"iliofemoral_ligament\"\norigin_lps_mm = [0.0, -20.0, 25.0]\n"
     "insertion_lps_mm = [0.0, -20.0, -25.0]\nstiffness_N_per_mm = 20.0\nwrap_radius_mm = 23.5\n"
     "[[joint.ligament]]\nname = \"loose\"\norigin_lps_mm = [10.0, 0.0, 40.0]\n"
@@ -64,13 +64,15 @@ TEST(Ligaments, HaveAColumnEachInTheSummary) {
   result.has_labrum = true;
   result.frames[0].labrum_clearance = 1.5;
   result.bare_bone = joint::BareBone::both;
+  result.has_friction = true;
   result.ligaments = {"iliofemoral_ligament", "loose"};
   result.frames[0].ligament_tension = Vec2(12.5, 0.0);
   result.frames[0].balance.force_of_femur = Vec3(0.0, 0.0, 33.0);
+  result.frames[0].balance.friction_moment = Vec3(0.0, 3.0, 4.0);
   const auto lines = lines_of();
   ASSERT_EQ(lines.size(), 3U);
   for (const auto& line : lines) EXPECT_EQ(line.size(), lines[0].size());
-  EXPECT_EQ(lines[0].size(), without[0].size() + 4);
+  EXPECT_EQ(lines[0].size(), without[0].size() + 6);
   const auto value = [&](std::size_t line, const std::string& name) {
     const auto& names = lines[0];
     const auto place = std::find(names.begin(), names.end(), name) - names.begin();
@@ -78,6 +80,7 @@ TEST(Ligaments, HaveAColumnEachInTheSummary) {
   };
   EXPECT_EQ(value(1, "labrum_clearance_mm"), "1.5");
   EXPECT_EQ(value(1, "force_of_bare_femur_N"), "33");
+  EXPECT_EQ(value(1, "friction_moment_Nmm"), "5");
   EXPECT_EQ(value(1, "tension_iliofemoral_ligament_N"), "12.5");
   EXPECT_EQ(value(1, "tension_loose_N"), "0");
   EXPECT_EQ(value(2, "tension_loose_N"), "");
@@ -98,6 +101,7 @@ TEST(Ligaments, AreWrittenToTheJointFileAsTheyWereRead) {
   io::write_bytes(small / "joint.toml", to_toml(request, small / ""));
   const JointRequest again = read_joint_request(small / "joint.toml");
   EXPECT_EQ(again.joint.bare_bone, "both");
+  EXPECT_EQ(again.joint.friction, 0.02);
   EXPECT_TRUE(fs::equivalent(again.labrum, request.labrum));
   ASSERT_EQ(again.joint.ligaments.size(), 2U);
   for (std::size_t k = 0; k < 2; ++k) {
@@ -112,6 +116,7 @@ TEST(Ligaments, AreWrittenToTheJointFileAsTheyWereRead) {
   motion::BoneFrames frames;
   const joint::JointModel model = read_joint_model(again, frames);
   EXPECT_EQ(model.bare_bone, joint::BareBone::both);
+  EXPECT_EQ(model.friction, 0.02);
   EXPECT_FALSE(model.labrum.empty());
   // without a slack length as long as in the image pose: around the head, longer than straight
   EXPECT_EQ(model.ligaments[0].slack_length,
@@ -157,6 +162,8 @@ TEST(Labrum, OfTheJointFileIsTheSoftOneWithItsModulus) {
   EXPECT_EQ(commas[2], commas[0]);
 }
 TEST(Ligaments, OfTheFileAreCheckedByKey) {
+  EXPECT_NE(error_of("[joint]\nfriction = -0.1\n").find("friction must not be negative"),
+            std::string::npos);
   EXPECT_NE(error_of("[joint]\nbare_bone = \"femur\"\n").find("must be \"hip_bone\" or \"both\""),
             std::string::npos);
   EXPECT_NE(error_of("[[joint.ligament]]\nname = \"a\"\n").find("origin_lps_mm"),

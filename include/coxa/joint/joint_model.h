@@ -56,6 +56,7 @@ struct JointModel {
   RigidTransform X_IP, X_IF;
   CartilageMaterial material;
   CartilageMaterial labrum_material = kLabrumMaterial;
+  double friction = 0.0;  ///< coefficient of cartilage on cartilage, >= 0
   BareBone bare_bone = BareBone::hip_bone;
   std::vector<Ligament> ligaments = {};
 };

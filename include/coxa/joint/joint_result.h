@@ -73,9 +73,11 @@ struct BalanceFigures {
   Vec3 applied_force =
       Vec3::Zero();  ///< N, femur onto socket, image axes; NaN with a prescribed pose
   Vec3 contact_force = Vec3::Zero();   ///< N, femur onto socket: integral of pressure times normal,
-                                       ///< bare bone included
-  Vec3 force_on_bone = Vec3::Zero();   ///< N, the part of it on hip bone that no cartilage covers
-  Vec3 force_of_femur = Vec3::Zero();  ///< N, the part of it by femur that no cartilage covers
+                                       ///< bare bone included, and friction
+  Vec3 friction_force = Vec3::Zero();  ///< N, the part of it by friction
+  Vec3 friction_moment = Vec3::Zero();  ///< N·mm, of friction on the socket about the joint centre
+  Vec3 force_on_bone = Vec3::Zero();    ///< N, the part of it on hip bone that no cartilage covers
+  Vec3 force_of_femur = Vec3::Zero();   ///< N, the part of it by femur that no cartilage covers
   Vec3 force_on_labrum = Vec3::Zero();  ///< N, the part of it on the soft labrum
   Vec3 ligament_force = Vec3::Zero();   ///< N, of the ligaments on the femur
   Vec3 socket_reaction = Vec3::Zero();  ///< N, of the acetabular bone side onto the hip bone
@@ -154,6 +156,7 @@ struct JointResult {
   std::optional<CentreSensitivity> sensitivity;
   std::string load_description;
   BareBone bare_bone = BareBone::hip_bone;  ///< of the model
+  bool has_friction = false;                ///< the model
   std::vector<std::string> ligaments;       ///< the model's, by name
   double seconds = 0.0;
 

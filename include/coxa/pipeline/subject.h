@@ -53,6 +53,7 @@ struct JointEntry {
   double poisson_ratio = 0.42;
   std::string law = "corotational";       ///< or st_venant_kirchhoff, neo_hookean
   std::string volume_change = "patches";  ///< or elements: what resists it
+  double friction = 0.0;                  ///< coefficient of cartilage on cartilage
   std::string bare_bone = "hip_bone";     ///< or both
   double labrum_modulus = joint::kLabrumMaterial.youngs_modulus;  ///< MPa
   double labrum_poisson_ratio = joint::kLabrumMaterial.poissons_ratio;
