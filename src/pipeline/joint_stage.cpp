@@ -7,6 +7,7 @@
 #include <coxa/io/tets.h>
 #include <coxa/pipeline/motion_stage.h>
 
+#include "joint_figures.h"
 #include "joint_files.h"
 
 namespace coxa::pipeline {
@@ -17,8 +18,6 @@ namespace {
 // cartilage by a third, mm
 constexpr double kCentreShift = 0.1;
 constexpr double kTonnePerKilogram = 1e-3;
-// share of the joint force on bare bone that no healthy hip has
-constexpr double kMuchOnBone = 0.1;
 
 const char* name_of(Loading loading) {
   return loading == Loading::joint_force   ? "joint_force"
@@ -81,84 +80,6 @@ joint::JointOptions joint_options() {
   joint::JointOptions options;
   options.centre_shift = kCentreShift;
   return options;
-}
-
-void add_limit(const std::string& name, const joint::BonyLimit& limit, Record& record) {
-  record.figures[name + "_flexion_deg"] = degrees(limit.angles.flexion);
-  record.figures[name + "_adduction_deg"] = degrees(limit.angles.adduction);
-  record.figures[name + "_internal_rotation_deg"] = degrees(limit.angles.internal_rotation);
-  record.figures[name + "_clock_hour"] = limit.hour;
-  record.figures[name + "_place_lps_mm"] =
-      join_text(limit.place.x(), " ", limit.place.y(), " ", limit.place.z());
-}
-
-void add_sensitivity(const joint::CentreSensitivity& sensitivity, Record& record) {
-  double lowest = kInfinity, highest = -kInfinity;
-  for (const double peak : sensitivity.peak.reshaped()) {
-    if (peak == peak) lowest = std::min(lowest, peak), highest = std::max(highest, peak);
-  }
-  record.figures["sensitivity_shift_mm"] = sensitivity.shift;
-  record.figures["sensitivity_peak_at_rest_mpa"] = sensitivity.at_rest;
-  if (lowest > highest) return;
-  record.figures["sensitivity_lowest_peak_mpa"] = lowest;
-  record.figures["sensitivity_highest_peak_mpa"] = highest;
-}
-
-void add_figures(const joint::JointResult& result, Record& record) {
-  record.figures["frames"] = static_cast<std::int64_t>(result.frames.size());
-  record.figures["frames_converged"] = std::int64_t{result.n_converged()};
-  record.figures["load"] = result.load_description;
-  double peak = 0.0, force_error = 0.0, reaction_error = 0.0, bare = 0.0, bare_femur = 0.0;
-  double labrum_share = 0.0, labrum_peak = 0.0, labrum_strain = 0.0;
-  VecX tension = VecX::Zero(static_cast<Eigen::Index>(result.ligaments.size()));
-  for (const joint::FrameResult& frame : result.frames) {
-    if (frame.status == joint::FrameStatus::failed) {
-      record.warnings.push_back(
-          join_text("frame ", frame.frame, " did not converge: ", frame.reason));
-    }
-    if (frame.status != joint::FrameStatus::converged) continue;
-    if (frame.crush.least_volume_ratio < joint::kSolidShare) {
-      record.warnings.push_back(join_text(
-          "frame ", frame.frame, ": ", frame.crush.body, " near ", frame.crush.place.transpose(),
-          " is squeezed to ", 100.0 * frame.crush.least_volume_ratio,
-          " % of its volume: an edge bears the load there, and peak pressures tell of that edge"));
-    }
-    peak = std::max(peak, frame.contact.peak_pressure_p99);
-    if (const double all = frame.balance.contact_force.norm(); all > 0.0) {
-      bare = std::max(bare, frame.balance.force_on_bone.norm() / all);
-      bare_femur = std::max(bare_femur, frame.balance.force_of_femur.norm() / all);
-    }
-    labrum_share = std::max(labrum_share, frame.labrum.force_share);
-    labrum_peak = std::max(labrum_peak, frame.labrum.peak_pressure_p99);
-    labrum_strain = std::max(labrum_strain, frame.labrum.peak_strain_p99);
-    tension = tension.cwiseMax(frame.ligament_tension);
-    force_error = std::max(force_error, frame.balance.force_error);
-    reaction_error = std::max(reaction_error, frame.balance.reaction_error);
-  }
-  record.figures["largest_peak_pressure_p99_mpa"] = peak;
-  record.figures["largest_share_on_bare_bone_percent"] = 100.0 * bare;
-  if (result.bare_bone == joint::BareBone::both)
-    record.figures["largest_share_of_bare_femur_percent"] = 100.0 * bare_femur;
-  if (result.has_labrum_body) {
-    record.figures["largest_share_on_labrum_percent"] = 100.0 * labrum_share;
-    record.figures["largest_labrum_pressure_p99_mpa"] = labrum_peak;
-    record.figures["largest_labrum_strain_p99"] = labrum_strain;
-  }
-  for (std::size_t k = 0; k < result.ligaments.size(); ++k)
-    record.figures["largest_tension_" + result.ligaments[k] + "_N"] =
-        tension[static_cast<Eigen::Index>(k)];
-  if (bare > kMuchOnBone) {
-    record.warnings.push_back(join_text(
-        "up to ", 100.0 * bare,
-        " % of the joint force rests on bone that no acetabular cartilage covers: its rim may have "
-        "been found too short, or the bone beside it too near; pressures on the cartilage are then "
-        "too low"));
-  }
-  record.figures["largest_force_error_percent"] = 100.0 * force_error;
-  record.figures["largest_reaction_error"] = reaction_error;
-  if (result.bony_limit) add_limit("bony_limit", *result.bony_limit, record);
-  if (result.labrum_contact) add_limit("labrum_contact", *result.labrum_contact, record);
-  if (result.sensitivity) add_sensitivity(*result.sensitivity, record);
 }
 
 fs::path existing(const io::Table& table, const std::string& key) {
@@ -292,7 +213,7 @@ Record run_joint_stage(const JointRequest& request, const fs::path& folder, Reus
       fail(ErrorCode::no_convergence,
            "no frame of the movement converged; frame 0: ", result.frames.front().reason);
     }
-    add_figures(result, record);
+    add_joint_figures(result, record);
     write_frames(partial, model, artefacts.motion, result);
     io::write_bytes(partial / "summary.csv", summary_csv(artefacts.motion, result));
     io::write_bytes(partial / "joint.toml", to_toml(request, folder));

@@ -120,7 +120,9 @@ void add_options(const meshing::MeshingOptions& options, Record& record) {
   if (options.layers) record.options["layers"] = std::int64_t{*options.layers};
 }
 
-void add_figures(const meshing::MeshingResult& result, const std::string& prefix, Record& record) {
+/// @param body its name before figures and notes; empty where there is but one
+void add_figures(const meshing::MeshingResult& result, const std::string& body, Record& record) {
+  const std::string prefix = body.empty() ? "" : body + "_";
   const meshing::MeshingReport& report = result.report;
   record.figures[prefix + "tets"] = std::int64_t{result.mesh.n_tets()};
   record.figures[prefix + "method"] = method_name(report.method);
@@ -134,7 +136,8 @@ void add_figures(const meshing::MeshingResult& result, const std::string& prefix
   record.figures[prefix + "envelope_max_mm"] = report.envelope;
   if (result.mesh.mid_nodes.rows() > 0)
     record.figures[prefix + "least_jacobian_ratio"] = report.least_jacobian;
-  for (const std::string& note : report.notes) record.warnings.push_back(prefix + note);
+  for (const std::string& note : report.notes)
+    record.warnings.push_back(body.empty() ? note : body + ": " + note);
 }
 
 bool has_sheet_tags(const TetMesh& mesh) {
@@ -194,7 +197,7 @@ Record run_mesh_stage(const fs::path& segment_folder, const meshing::MeshingOpti
       meshing::MeshingResult result = filled(surface, options, Faces::needed, cartilage, record,
                                              part_of(monitor, "mesh", done, done + 0.5));
       tag_for_bone(result.mesh, surfaces.at(bone).mesh, std::string(cartilage) + ": ", record);
-      add_figures(result, std::string(cartilage) + "_", record);
+      add_figures(result, cartilage, record);
       io::write_tets(partial / (std::string(cartilage) + ".vtu"), result.mesh);
       done += 0.5;
     }
