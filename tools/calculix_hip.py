@@ -6,8 +6,8 @@ usage: calculix_hip.py JOINT.toml [--press build/release/joint_press] [--way 0.7
 
 The deck is the meshes that joint_press writes as .inp, with the socket's bone side held, the head's bone side moved, E 12 MPa
 and Poisson's ratio 0.42, frictionless surface-to-surface penalty contact, large deformations.  Default direction: against the
-opening axis of libhip m2 left.  Force from reactions; area, pressures and centre of pressure from the contact stresses at the slave's integration
-points, as coxa samples its own.
+opening axis of libhip m2 left.  Force from reactions, area as CalculiX prints it; pressures and centre of pressure from the overlaps at the slave's
+integration points, each with its part of what of its face is in contact, as coxa samples its own.
 """
 import argparse
 import os
@@ -115,6 +115,16 @@ def percentile(values, areas, share):
     return values[order][np.searchsorted(below, share * below[-1])]
 
 
+def shares_in_contact(counts, areas, in_contact):
+    """The share of each face that is in contact, from how many of its points are.  CalculiX prints the points that press only, not how
+    many a face has: taken as the number for all faces with which the shares add up to the area that it prints."""
+    low, high = 1.0, 10.0 * counts.max()
+    for _ in range(60):
+        full = 0.5 * (low + high)
+        low, high = (full, high) if (areas * np.minimum(1.0, counts / full)).sum() > in_contact else (low, full)
+    return np.minimum(1.0, counts / full)
+
+
 def figures(printed, meshes, stiffness):
     found = sections(printed)
     force = np.array(section(found, "total force (fx,fy,fz) for set SOCKET_BONE")[0])
@@ -127,13 +137,16 @@ def figures(printed, meshes, stiffness):
     pressures, areas, places = [], [], []
     for side, values in overlaps.items():
         a, b, c = (np.array(nodes[n]) + moved[n] for n in side_nodes(elements, side)[:3])
-        pressures.append(stiffness * np.mean(values))
+        pressures.append(stiffness * np.array(values))
         areas.append(0.5 * np.linalg.norm(np.cross(b - a, c - a)))
         places.append((a + b + c) / 3.0)
-    pressures, areas, places = np.array(pressures), np.array(areas), np.array(places)
-    centre = (places * (pressures * areas)[:, None]).sum(axis=0) / (pressures * areas).sum()
+    areas = np.array(areas) * shares_in_contact(np.array([len(p) for p in pressures]), np.array(areas), area)
+    point_areas = np.concatenate([np.full(len(p), a / len(p)) for p, a in zip(pressures, areas)])
+    points = np.concatenate(pressures)
+    means = np.array([np.mean(p) for p in pressures])
+    centre = (np.array(places) * (means * areas)[:, None]).sum(axis=0) / (means * areas).sum()
     return (f"force {np.linalg.norm(force):.1f} N ({force[0]:.1f} {force[1]:.1f} {force[2]:.1f}), area {area:.1f} mm2, "
-            f"p95 {percentile(pressures, areas, 0.95):.3f}, p99 {percentile(pressures, areas, 0.99):.3f} MPa (means of faces), "
+            f"p95 {percentile(points, point_areas, 0.95):.3f}, p99 {percentile(points, point_areas, 0.99):.3f} MPa, "
             f"centre of pressure {centre[0]:.2f} {centre[1]:.2f} {centre[2]:.2f}")
 
 
