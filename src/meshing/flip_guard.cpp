@@ -81,6 +81,13 @@ bool links_agree(const TetGrid& grid, Index a, Index b) {
 
 }  // namespace
 
+std::optional<NodeKind> FlipGuard::face_of(NodeKind a, NodeKind b) const {
+  if (a == b && slides(a)) return a;
+  const bool beside_crease = at_creases_ && on_first_face(a) && on_first_face(b);
+  if (beside_crease && (slides(a) || slides(b))) return NodeKind::first_face;
+  return std::nullopt;
+}
+
 double FlipGuard::departure(NodeKind kind, const Vec3& a, const Vec3& b, const Vec3& c) const {
   double largest = 0.0;
   for (const Vec3& p :
@@ -90,10 +97,19 @@ double FlipGuard::departure(NodeKind kind, const Vec3& a, const Vec3& b, const V
 }
 
 bool FlipGuard::allows_swap(const TetGrid& grid, Index a, Index b, Index p, Index q) const {
-  const NodeKind kind = grid.kinds[at(a)];
-  for (const Index v : {a, b, p, q})
-    if (grid.kinds[at(v)] != kind || !slides(kind)) return false;
-  if (has_edge(grid, p, q)) return false;
+  return !has_edge(grid, p, q) && keeps_shape(grid, a, b, p, q);
+}
+
+bool FlipGuard::allows_peeling(const TetGrid& grid, Index a, Index b, Index p, Index q) const {
+  return at_creases_ && !edge_on_boundary(grid, p, q) && keeps_shape(grid, a, b, p, q);
+}
+
+bool FlipGuard::keeps_shape(const TetGrid& grid, Index a, Index b, Index p, Index q) const {
+  const auto face = face_of(grid.kinds[at(a)], grid.kinds[at(b)]);
+  if (!face) return false;
+  const NodeKind kind = *face;
+  for (const Index v : {p, q})
+    if (!face_of(kind, grid.kinds[at(v)])) return false;
   const Vec3 &x = grid.x[at(a)], &y = grid.x[at(b)], &u = grid.x[at(p)], &v = grid.x[at(q)];
   // seen from outside the facets run a, q, p … or the other way round: only agreement counts
   const Vec3 first = normal_of(x, y, u), second = normal_of(y, x, v);
@@ -107,12 +123,24 @@ bool FlipGuard::allows_swap(const TetGrid& grid, Index a, Index b, Index p, Inde
   return after <= std::max(tolerance_, before);
 }
 
+bool FlipGuard::along_crease(const TetGrid& grid, Index a, Index b) const {
+  const NodeKind from = grid.kinds[at(b)], to = grid.kinds[at(a)];
+  if (!at_creases_ || from != NodeKind::first_crease || !on_first_face(to) || slides(to))
+    return false;
+  constexpr double kBeside = 0.1;  // of the way
+  const Vec3 home = guide_.place(from, grid.x[at(b)]), way = grid.x[at(a)] - home;
+  const Vec3 middle = home + 0.5 * way;
+  return (guide_.place(from, middle) - middle).norm() <= kBeside * way.norm();
+}
+
 bool FlipGuard::allows_collapse(const TetGrid& grid, Index a, Index b) const {
   if (!links_agree(grid, a, b)) return false;
   const std::vector<Facet> facets = facets_at(grid, b);
   if (facets.empty()) return true;
-  const NodeKind kind = grid.kinds[at(b)];
-  if (!slides(kind) || grid.kinds[at(a)] != kind || !edge_on_boundary(grid, a, b)) return false;
+  const bool crease = along_crease(grid, a, b);
+  const NodeKind kind = crease ? NodeKind::first_face : grid.kinds[at(b)];
+  if (!edge_on_boundary(grid, a, b)) return false;
+  if (!crease && (!slides(kind) || !face_of(kind, grid.kinds[at(a)]))) return false;
   for (const Facet& f : facets) {
     if (f[1] == a || f[2] == a) continue;
     const Vec3 &x = grid.x[at(b)], &y = grid.x[at(f[1])], &z = grid.x[at(f[2])], &p = grid.x[at(a)];

@@ -167,6 +167,22 @@ bool collapse_edge(Flipping& flipping, Index a, Index b) {
   return flipping.replace(old, made);
 }
 
+// takes a flat element at the boundary away: two of its facets are there, and the others take
+// their place
+bool peel(Flipping& flipping, Index t) {
+  constexpr double kFlat = 0.3;  // quality
+  const TetGrid& grid = flipping.grid;
+  const Tet tet = grid.tets[at(t)];
+  if (flip_quality(grid, tet) > kFlat) return false;
+  std::vector<Index> outer, shared;  // corners opposite to facets of the boundary, and the others
+  for (std::size_t k = 0; k < 4; ++k)
+    (on_boundary(grid, facet_opposite(tet, k)) ? outer : shared).push_back(tet[k]);
+  if (outer.size() != 2 ||
+      !flipping.guard.allows_peeling(grid, shared[0], shared[1], outer[0], outer[1]))
+    return false;
+  return flipping.replace({t}, {});
+}
+
 bool improve_around(Flipping& flipping, Index t, bool collapse) {
   const Tet tet = flipping.grid.tets[at(t)];
   for (std::size_t i = 0; i < 4; ++i)
@@ -177,7 +193,7 @@ bool improve_around(Flipping& flipping, Index t, bool collapse) {
   for (std::size_t i = 0; i < 4 && collapse; ++i)
     for (std::size_t j = 0; j < 4; ++j)
       if (i != j && collapse_edge(flipping, tet[i], tet[j])) return true;
-  return false;
+  return peel(flipping, t);
 }
 
 }  // namespace
@@ -188,7 +204,7 @@ double flip_quality(const TetGrid& grid, const Tet& t) {
 
 Index flip_poor(TetGrid& grid, const SlideGuide& guide, const FlipRules& rules) {
   constexpr int kPasses = 4;
-  const FlipGuard guard(guide, rules.tolerance);
+  const FlipGuard guard(guide, rules.tolerance, rules.at_creases);
   Flipping flipping{grid, guard, rules.max_tets - grid.n_living()};
   Index changes = 0;
   for (int pass = 0; pass < kPasses; ++pass) {

@@ -12,6 +12,7 @@ struct FlipRules {
                             ///< as the old ones were
   int max_tets = 1 << 30;   ///< elements are not made more than this
   bool collapse = true;     ///< edges may vanish, and a node with each
+  bool at_creases = false;  ///< of a solid: facets beside creases and corners may change too
 };
 
 /// Quality of an element in flips: inverse of its shape energy, 0 where it is inverted.
@@ -21,8 +22,8 @@ double flip_quality(const TetGrid& grid, const Tet& t);
 /// that change: removes edges (2-2, 3-2, 4-4 and larger swaps, the best of all triangulations of
 /// the ring around the edge), replaces a face by an edge (2-3), and collapses edges.
 ///
-/// The boundary changes only between nodes of one kind that slide on a face, and only where the new
-/// facets lie as near to the surface.
+/// The boundary changes only between nodes of one kind that slide on a face (or `at_creases`, which
+/// themselves stay), and only where the new facets lie as near to the surface.
 /// @returns how many changes were made
 /// Source: edge removal by dynamic programming after Klincsek 1980 and Shewchuk 2002.
 Index flip_poor(TetGrid& grid, const SlideGuide& guide, const FlipRules& rules);

@@ -1,15 +1,12 @@
 #include "solid_mesh.h"
 
 #include "cover.h"
-#include "flips.h"
+#include "feature_curves.h"
 #include "lattice.h"
 #include "limits.h"
-#include "mending.h"
-#include "node_freedom.h"
-#include "node_smoothing.h"
 #include "solid_guide.h"
+#include "solid_improve.h"
 #include "tet_boundary.h"
-#include "worst_elements.h"
 
 #include <coxa/core/error.h>
 #include <coxa/mesh/measures.h>
@@ -31,6 +28,7 @@ constexpr double kMostUneven = 2.5;    // flatness over that wanted up to which 
 constexpr double kLargest = 0.08;      // of the diagonal: edge of the largest cubes at the surface
 constexpr double kCoarser = 1.3;       // growth of the flatness when elements are too many
 constexpr int kSizeTries = 24;
+constexpr double kMuchMissed = 0.25;    // mm, of the surface: worth another attempt
 constexpr int kMostTets = 200000;       // at first
 constexpr int kMostFinerTets = 400000;  // where finer cubes are needed to meet the surface
 
@@ -91,66 +89,6 @@ Filling fill_within(const TriMesh& surface, Filler& filler, int max_tets, Octree
        " tetrahedra was found; allow more of them");
 }
 
-// boundary nodes go to the surface, as far as the elements allow it
-void draw_to_surface(TetGrid& grid, const SlideGuide& guide) {
-  constexpr double kWorst = 6.0;  // shape energy allowed just then
-  for (std::size_t v = 0; v < grid.x.size(); ++v) {
-    if (grid.kinds[v] == NodeKind::inside || grid.around[v].empty()) continue;
-    const Vec3 old = grid.x[v], home = guide.place(grid.kinds[v], old);
-    const double allowed = std::max(kWorst, worst_energy(grid, static_cast<Index>(v)));
-    for (const double share : {1.0, 0.8, 0.6, 0.4, 0.2, 0.0}) {
-      grid.x[v] = old + share * (home - old);
-      grid.reach[v] = share < 1.0 ? (1.0 - share) * (home - old).norm() : 0.0;
-      if (worst_energy(grid, static_cast<Index>(v)) <= allowed) break;
-    }
-  }
-}
-
-enum class Connections { may_change, stay };
-
-void improve(TetGrid& grid, const SlideGuide& guide, const TriMesh& surface,
-             const MeshingOptions& options, Connections connections, const Monitor& monitor) {
-  const int rounds = options.improvement_rounds;
-  constexpr int kMeanRounds = 4;  // first the average, then the worst
-  constexpr int kCoverRounds = 3;
-  constexpr std::size_t kMostCovered = 1500;  // where more are missed, finer cubes come next
-  const auto flip = [&](double below) {
-    if (connections == Connections::may_change)
-      flip_poor(grid, guide,
-                {.below = below, .max_tets = options.max_tets.value_or(kMostFinerTets)});
-  };
-  for (int k = 0; k < rounds; ++k) {
-    monitor.check_cancelled();
-    monitor.progress("improve", static_cast<double>(k) / rounds);
-    update_positions(grid, guide, k < kMeanRounds ? 1.0 : 3.0);
-    draw_to_surface(grid, guide);
-    if (k > 0) flip(0.5);
-  }
-  const auto room = [&]() -> std::ptrdiff_t {
-    return connections == Connections::may_change
-               ? options.max_tets.value_or(kMostFinerTets) - grid.n_living()
-               : 0;
-  };
-  for (int k = 0; k < kCoverRounds &&
-                  cover_far_places(grid, surface, {.most = kMostCovered, .room = room()}) > 0;
-       ++k) {
-    flip(0.5);
-    update_positions(grid, guide, 3.0);
-  }
-  for (int k = 0; k < rounds && raise_worst(grid, guide) > 0; ++k) {
-    monitor.check_cancelled();
-    flip(0.35);
-  }
-  if (rounds > 0) raise_freely(grid, guide);
-  draw_back(grid, guide);
-  for (int k = 0; rounds > 0 && k < kCoverRounds; ++k) {
-    if (cover_far_places(grid, surface, {.most = kMostCovered, .room = room()}) == 0) break;
-    flip(0.35);
-    raise_worst(grid, guide);
-  }
-  if (rounds > 0 && has_poor_element(grid)) raise_freely(grid, guide);
-}
-
 void add_notes(const TriMesh& surface, double flatness, MeshingReport& report) {
   constexpr double kWhole = 0.95;
   if (flatness > kFlatness)
@@ -175,19 +113,12 @@ MeshingResult result_of(TetGrid& grid, const std::vector<Miss>& missed) {
 }
 
 // the lattice made good; what of the surface it misses is told
-MeshingResult improved(TetGrid grid, const SlideGuide& guide, const TriMesh& surface,
+MeshingResult improved(TetGrid grid, const SolidGuide& guide, const TriMesh& surface,
                        const MeshingOptions& options, std::vector<Miss>& missed,
                        const Monitor& monitor) {
-  draw_to_surface(grid, guide);
-  const TetGrid start = grid;
-  improve(grid, guide, surface, options, Connections::may_change, monitor);
-  Index dropped = drop_poor_elements(grid);
-  if (!pinched_nodes(grid).empty()) {
-    // where thin parts fold over themselves changed connections may touch: keep the lattice's
-    grid = start;
-    improve(grid, guide, surface, options, Connections::stay, monitor);
-    dropped = 0;
-  }
+  const Index dropped = improve_solid(
+      grid, guide, surface, {options.improvement_rounds, options.max_tets.value_or(kMostFinerTets)},
+      monitor);
   missed = misses(grid, surface);
   MeshingResult result = result_of(grid, missed);
   if (dropped > 0)
@@ -196,16 +127,29 @@ MeshingResult improved(TetGrid grid, const SlideGuide& guide, const TriMesh& sur
   return result;
 }
 
+bool any_much_missed(const std::vector<Miss>& missed) {
+  return std::any_of(missed.begin(), missed.end(),
+                     [](const Miss& m) { return m.distance > kMuchMissed; });
+}
+
 // half as large cubes where the surface was missed; returns whether there are such places
 bool update_fine_places(const std::vector<Miss>& missed, const Octree& octree,
                         OctreeOptions& cubes) {
-  constexpr double kMissed = 0.2, kMuchMissed = 0.25;  // mm
-  const bool any = std::any_of(missed.begin(), missed.end(),
-                               [](const Miss& m) { return m.distance > kMuchMissed; });
+  constexpr double kMissed = 0.2;  // mm
+  const bool any = any_much_missed(missed);
   for (const Miss& miss : missed)
     if (any && miss.distance > kMissed)
       cubes.fine_places.push_back({miss.p, 0.5 * octree.size_at(miss.p)});
   return any;
+}
+
+// ridges along which the mesh should run, where it misses the surface without that
+FeatureCurves ridges_missed(const TriMesh& surface, const MeshingResult& made,
+                            const MeshingOptions& options, const OctreeOptions& cubes) {
+  constexpr double kMissed = 0.15;   // mm, of the surface, where finer cubes are not allowed
+  constexpr double kShortest = 3.0;  // of the smallest cubes
+  const bool met = made.report.envelope <= (options.max_tets ? kMissed : kMuchMissed);
+  return met ? FeatureCurves{} : feature_curves(surface, kShortest * cubes.smallest);
 }
 
 }  // namespace
@@ -221,6 +165,7 @@ MeshingResult mesh_solid(const TriMesh& surface, const MeshingOptions& options,
   Filler filler(surface, tree);
   Filling filling =
       fill_within(surface, filler, max_tets, cubes, part_of(monitor, "lattice", 0.0, 0.4));
+  OctreeOptions used = cubes;
   std::vector<Miss> missed;
   MeshingResult best = improved(std::move(filling.grid), guide, surface, options, missed,
                                 part_of(monitor, "improve", 0.4, 0.7));
@@ -233,13 +178,21 @@ MeshingResult mesh_solid(const TriMesh& surface, const MeshingOptions& options,
       std::tie(filled, made) = filler.fill(cubes, max_finer);
     }
     if (filled > 1.0) break;
+    used = cubes;
     filling = std::move(*made);
     MeshingResult finer =
         improved(std::move(filling.grid), guide, surface, options, missed,
                  part_of(monitor, "refine", 0.7 + 0.1 * round, 0.8 + 0.1 * round));
     if (nearer_to_limits(finer.report, best.report)) best = std::move(finer);
   }
-  add_notes(surface, cubes.flatness, best.report);
+  const SolidGuide along_ridges(tree, ridges_missed(surface, best, options, used));
+  if (!along_ridges.features().curves.empty())
+    if (auto again = filler.fill(used, max_finer).second) {
+      MeshingResult other = improved(std::move(again->grid), along_ridges, surface, options, missed,
+                                     part_of(monitor, "ridges", 0.9, 1.0));
+      if (nearer_to_limits(other.report, best.report)) best = std::move(other);
+    }
+  add_notes(surface, used.flatness, best.report);
   return best;
 }
 
