@@ -2,7 +2,7 @@
 """Meshes the cartilages of ../shared/data/libhip (or other surfaces) and prints the figures against the limits asked for.
 
 usage: evaluate_meshing.py --coxa build/release/coxa [--shared ../shared] [--layers N] [--tets N] [--only TEXT,…]
-                           [--work DIR] [--seconds N] [--all-cartilages | --bodies | --labels | --table] [SURFACE …]
+                           [--work DIR] [--seconds N] [--resume] [--all-cartilages | --bodies | --labels | --table] [SURFACE …]
 
 --bodies: bones, muscles, ligaments, labra and the cartilages other than libhip's, each at the size that coxa chooses; --labels: the
 largest piece of every label of ../shared/data/labels, its surface by marching cubes, evened.  Where a surface was repaired, the
@@ -156,25 +156,28 @@ def text_of(key, value):
 
 
 def print_table(work, limits):
-    """One row a class: how many were run, which limits how many of them miss, the worst (and median) figures."""
+    """One row a class: how many were run, which limits how many of them miss, the worst (and median) figures, and for repaired
+    surfaces the worst envelope error against what they were repaired to."""
     classes = {}
     for path in sorted(work.glob("*.figures.json")):
         outcome = json.loads(path.read_text())
         classes.setdefault(class_of(path.name.split(".")[0]), []).append(outcome)
     shown = ("tets", "aspect_mean", "aspect_p05", "aspect_min", "dihedral_min", "dihedral_max", "envelope_rms", "envelope_max", "seconds")
-    print("| class | run | miss a limit |", " | ".join(shown), "|")
-    print("|---" * (3 + len(shown)) + "|")
+    print("| class | run | miss a limit |", " | ".join(shown), "| repaired: rms, max |")
+    print("|---" * (4 + len(shown)) + "|")
     for kind, outcomes in sorted(classes.items()):
         rows = [o for o in outcomes if "failed" not in o]
         over = [k for r in rows for k in missed(r, limits, 0)] + ["no mesh"] * (len(outcomes) - len(rows))
         n_bad = sum(bool(missed(r, limits, 0)) for r in rows) + len(outcomes) - len(rows)
         words = ", ".join(f"{k} {over.count(k)}" for k in sorted(set(over)))
+        new = [[r["filled_rms"], r["filled_max"]] for r in rows if "filled_rms" in r]
+        mended = f"{len(new)}: {max(n[0] for n in new):.3f}, {max(n[1] for n in new):.3f}" if new else ""
         cells = []
         for k in shown if rows else ():
             values = [r[k] for r in rows]
             worst = min(values) if limits[k][2] > 0 else max(values)
             cells.append(f"{text_of(k, worst).strip()} ({text_of(k, np.median(values)).strip()})")
-        print(f"| {kind} | {len(outcomes)} | {n_bad}{': ' + words if words else ''} |", " | ".join(cells), "|")
+        print(f"| {kind} | {len(outcomes)} | {n_bad}{': ' + words if words else ''} |", " | ".join(cells), f"| {mended} |")
 
 
 def main():
@@ -189,6 +192,7 @@ def main():
     parser.add_argument("--bodies", action="store_true", help="all but libhip's femoral and acetabular cartilages")
     parser.add_argument("--labels", action="store_true", help="surfaces of the label maps")
     parser.add_argument("--table", action="store_true", help="of the outcomes kept in --work")
+    parser.add_argument("--resume", action="store_true", help="what has an outcome in --work is not meshed again")
     parser.add_argument("--seconds", type=int, help="of processor time after which a body is given up")
     parser.add_argument("surfaces", nargs="*", type=pathlib.Path)
     arguments = parser.parse_args()
@@ -213,8 +217,10 @@ def main():
         name = "_".join(surface.with_suffix("").parts[-3:])
         if wanted and not any(w in name for w in wanted):
             continue
-        n_surfaces += 1
         out, kept = arguments.work / f"{name}.vtu", arguments.work / f"{name}.figures.json"
+        if arguments.resume and kept.exists():
+            continue
+        n_surfaces += 1
         try:
             seconds, megabytes, repaired = run_mesh(arguments.coxa, surface, out, options, arguments.seconds)
             figures = {**figures_of(judge, out, surface, repaired), "seconds": seconds, "megabytes": megabytes}
