@@ -26,6 +26,7 @@ Fields joint_defaults() {
           {"volume_change", joint.volume_change},
           {"friction", joint.friction},
           {"bare_bone", joint.bare_bone},
+          {"labrum", joint.labrum},
           {"labrum_young_mpa", joint.labrum_modulus},
           {"labrum_poisson", joint.labrum_poisson_ratio}};
 }

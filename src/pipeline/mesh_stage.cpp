@@ -17,6 +17,9 @@ namespace coxa::pipeline {
 namespace fs = std::filesystem;
 namespace {
 
+// the labrum is a small body beside the cartilages
+constexpr int kLabrumTets = 4000;
+
 std::string method_name(meshing::Method method) {
   switch (method) {
     case meshing::Method::automatic:
@@ -75,6 +78,30 @@ void tag_for_bone(TetMesh& mesh, const TriMesh& bone, const std::string& prefix,
   }
 }
 
+/// The labrum as a body for the joint, where it was segmented and can be meshed.
+void add_labrum(const fs::path& segment_folder, const TriMesh& hip_bone,
+                const meshing::MeshingOptions& options, const fs::path& partial, Record& record,
+                const Monitor& monitor) {
+  const fs::path labrum = segment_folder / "acetabular_labrum.vtp";
+  if (!fs::exists(labrum)) return;
+  meshing::MeshingOptions coarse = options;
+  coarse.max_tets = std::min(kLabrumTets, options.max_tets.value_or(kLabrumTets));
+  coarse.layers.reset();
+  try {
+    const TriMesh surface =
+        usable_surface(io::read_surface(labrum), "acetabular_labrum", record, monitor);
+    meshing::MeshingResult result =
+        filled_surface(surface, coarse, Faces::any, "acetabular_labrum", record, monitor);
+    tag_for_bone(result.mesh, hip_bone, "acetabular_labrum: ", record);
+    add_figures(result, "acetabular_labrum", record);
+    io::write_tets(partial / "acetabular_labrum.vtu", result.mesh);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::cancelled) throw;
+    record.warnings.push_back(join_text("acetabular_labrum was not meshed: ", error.what()));
+    monitor.warn(record.warnings.back());
+  }
+}
+
 }  // namespace
 
 Record run_mesh_file(const MeshRequest& request, const fs::path& out, const Monitor& monitor) {
@@ -123,6 +150,7 @@ Record run_mesh_stage(const fs::path& segment_folder, const meshing::MeshingOpti
       io::write_tets(partial / (std::string(cartilage) + ".vtu"), result.mesh);
       done += 0.5;
     }
+    add_labrum(segment_folder, surfaces.at("hip_bone").mesh, options, partial, record, monitor);
   };
   return run_stage(folder, wanted, reuse, monitor, body);
 }

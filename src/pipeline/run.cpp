@@ -68,6 +68,11 @@ class Run {
  private:
   JointRequest joint_request() const {
     const fs::path labrum = out_ / "segment" / "acetabular_labrum.vtp";
+    const fs::path body = out_ / "mesh" / "acetabular_labrum.vtu";
+    const bool soft = subject_.joint.labrum == "soft";
+    require(!soft || fs::exists(body),
+            "the joint is to have a soft labrum, but this run has none: structures does not name "
+            "the labrum, or it could not be meshed (see log.txt)");
     return {subject_.side,
             out_ / "mesh" / "acetabular_cartilage.vtu",
             out_ / "mesh" / "femoral_cartilage.vtu",
@@ -76,7 +81,8 @@ class Run {
             out_ / "motion",
             subject_.joint,
             subject_.body_mass,
-            fs::exists(labrum) ? labrum : fs::path()};
+            fs::exists(labrum) ? labrum : fs::path(),
+            soft ? body : fs::path()};
   }
 
   template <class Stage>

@@ -109,6 +109,8 @@ void check_joint(const io::Table& table, const JointEntry& joint) {
           table.where("law"),
           " must be \"corotational\", \"st_venant_kirchhoff\" or \"neo_hookean\", got \"",
           joint.law, "\"");
+  require(joint.labrum == "rigid" || joint.labrum == "soft", table.where("labrum"),
+          " must be \"rigid\" or \"soft\", got \"", joint.labrum, "\"");
   require(joint.labrum_modulus > 0.0, table.where("labrum_young_mpa"), " must be positive, got ",
           joint.labrum_modulus);
   require(joint.labrum_poisson_ratio > 0.0 && joint.labrum_poisson_ratio < 0.5,
@@ -176,6 +178,7 @@ JointEntry read_joint_entry(const io::Table& root) {
   joint.poisson_ratio = table->value_or("poisson", joint.poisson_ratio);
   joint.law = table->value_or("law", joint.law);
   joint.volume_change = table->value_or("volume_change", joint.volume_change);
+  joint.labrum = table->value_or("labrum", joint.labrum);
   joint.labrum_modulus = table->value_or("labrum_young_mpa", joint.labrum_modulus);
   joint.labrum_poisson_ratio = table->value_or("labrum_poisson", joint.labrum_poisson_ratio);
   joint.friction = table->value_or("friction", joint.friction);

@@ -141,6 +141,8 @@ TEST(Labrum, OfTheJointFileIsTheSoftOneWithItsModulus) {
   EXPECT_EQ(model.labrum_material.poissons_ratio, 0.3);
   EXPECT_NE(error_of("[joint]\nlabrum_young_mpa = -1.0\n").find("labrum_young_mpa"),
             std::string::npos);
+  EXPECT_NE(error_of("[joint]\nlabrum = \"hard\"\n").find("must be \"rigid\" or \"soft\""),
+            std::string::npos);
   EXPECT_NE(error_of("[joint]\nvolume_change = \"nodes\"\n").find("\"patches\" or \"elements\""),
             std::string::npos);
 

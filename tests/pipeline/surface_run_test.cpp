@@ -4,6 +4,8 @@
 #include <coxa/io/files.h>
 #include <coxa/io/surfaces.h>
 #include <coxa/io/tets.h>
+#include <coxa/pipeline/mesh_stage.h>
+#include <coxa/pipeline/record.h>
 #include <coxa/pipeline/surface_stage.h>
 #include <gtest/gtest.h>
 
@@ -64,6 +66,35 @@ TEST(SurfaceRun, GoesFromGivenSurfacesToTheReport) {
   }
 }
 
+TEST(SurfaceRun, MakesABodyOfTheLabrumAndGivesItToTheJointWhereItIsAskedFor) {
+  const test::SmallRun small("surface_run_labrum");
+  // a rind on the outside of the socket's bone, which the femur does not reach
+  const double outside = test::kSocketRadius + 8.0;
+  io::write_surface(
+      small / "segment/acetabular_labrum.vtp",
+      test::surface_of(test::cap_shell(outside + 2.0, outside + 0.1, radians(25.0), 5, 1)));
+  const fs::path mesh = small / "mesh_with_labrum";
+  const Record record =
+      run_mesh_stage(small / "segment", {.max_tets = 6000}, mesh, Reuse::never, {});
+  ASSERT_TRUE(fs::exists(mesh / "acetabular_labrum.vtu"))
+      << (record.warnings.empty() ? "" : record.warnings.back());
+  const TetMesh body = io::read_tets(mesh / "acetabular_labrum.vtu");
+  EXPECT_GT(body.n_tets(), 50);
+  EXPECT_LE(body.n_tets(), 4000);
+  EXPECT_GT(joint::facets_with(body, FacetTag::bone_side).rows(), 0);
+  EXPECT_EQ(std::get<std::int64_t>(record.figures.at("acetabular_labrum_tets")), body.n_tets());
+
+  // asked for where there is none
+  try {
+    run_subject(read_subject(subject_of(small, "[joint]\nlabrum = \"soft\"\n")), small / "out", {},
+                {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("structures does not name the labrum"),
+              std::string::npos)
+        << error.what();
+  }
+}
 TEST(SurfaceRun, NamesTheStructureThatCannotBeUsed) {
   const test::SmallRun small("surface_run_bad");
   TriMesh open = io::read_surface(small / "segment/femur.vtp");

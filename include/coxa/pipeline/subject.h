@@ -55,6 +55,7 @@ struct JointEntry {
   std::string volume_change = "patches";  ///< or elements: what resists it
   double friction = 0.0;                  ///< coefficient of cartilage on cartilage
   std::string bare_bone = "hip_bone";     ///< or both
+  std::string labrum = "rigid";           ///< or soft: what a run makes of a segmented labrum
   double labrum_modulus = joint::kLabrumMaterial.youngs_modulus;  ///< MPa
   double labrum_poisson_ratio = joint::kLabrumMaterial.poissons_ratio;
   std::vector<LigamentEntry> ligaments = {};
