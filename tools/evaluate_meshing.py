@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Meshes the cartilages of ../shared/data/libhip (or other surfaces) and prints the figures against the limits asked for.
 
-usage: evaluate_meshing.py --coxa build/release/coxa [--shared ../shared] [--layers N] [--tets N] [--only TEXT,…]
+usage: evaluate_meshing.py --coxa build/release/coxa [--shared ../shared] [--layers N] [--tets N] [--order 2] [--only TEXT,…]
                            [--work DIR] [--seconds N] [--resume] [--all-cartilages | --bodies | --labels | --table] [SURFACE …]
 
 --bodies: bones, muscles, ligaments, labra and the cartilages other than libhip's, each at the size that coxa chooses; --labels: the
@@ -11,6 +11,8 @@ the mesh; --table meshes nothing and shows all kept outcomes by class of body.
 
 Figures by ../shared/eval/mesh_quality.py; time is processor time of `coxa mesh`, so that neighbours on the machine do not count,
 and memory its largest resident set.  Default limits without --layers: those of the paper mesh; with it: of the mechanics mesh.
+With --order 2 elements have ten nodes: each facet of the boundary is judged as four triangles by its mid-edge nodes, and `jacobian`
+is the least Jacobian determinant over that of the corners, a bound that coxa gives for the whole of each element.
 """
 import argparse
 import json
@@ -30,6 +32,7 @@ PAPER = {"tets": (20000, None, -1), "aspect_mean": (0.72, 0.77, 1), "aspect_p05"
          "megabytes": (500, None, -1)}
 MECHANICS = {**PAPER, "tets": (90000, None, -1), "aspect_mean": (0.70, None, 1), "aspect_p05": (0.50, None, 1),
              "aspect_min": (0.15, None, 1), "seconds": (15, None, -1), "megabytes": (1000, None, -1)}
+TEN_NODE = {**MECHANICS, "tets": (20000, None, -1), "jacobian": (0.0, None, 1)}
 # bodies of any size: no limit of elements or time
 BODY = {**PAPER, "tets": (400000, None, -1), "seconds": (60, None, -1), "megabytes": (1000, None, -1)}
 FORMATS = {"tets": "6.0f", "inverted": "3.0f", "manifold": "3.0f", "dihedral_min": "6.1f", "dihedral_max": "6.1f", "seconds": "5.1f",
@@ -122,7 +125,26 @@ def outside(points, body):
     return points[vtk_to_numpy(select.GetOutput().GetPointData().GetArray("SelectedPoints")) == 0]
 
 
-def figures_of(judge, mesh, surface, repaired):
+def curved_boundary(mesh, facets):
+    """Points of a ten-node mesh and its boundary, four triangles to a facet."""
+    import vtk
+    from vtk.util.numpy_support import vtk_to_numpy
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(mesh))
+    reader.Update()
+    points = vtk_to_numpy(reader.GetOutput().GetPoints().GetData()).astype(float)
+    cells = vtk_to_numpy(reader.GetOutput().GetCells().GetConnectivityArray()).reshape(-1, 10)
+    middle = {}
+    for k, (a, b) in enumerate([(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]):
+        middle.update(zip(map(tuple, np.sort(cells[:, [a, b]], axis=1)), cells[:, 4 + k]))
+    parts = []
+    for a, b, c in facets:
+        ab, bc, ca = (middle[tuple(sorted(e))] for e in ((a, b), (b, c), (c, a)))
+        parts += [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    return points, np.array(parts)
+
+
+def figures_of(judge, mesh, surface, repaired, order):
     points, tets = judge.read_tets(str(mesh))
     truth = judge.read_surface(str(surface))
     volumes, dihedral, aspect = judge.quality(points, tets)
@@ -130,17 +152,19 @@ def figures_of(judge, mesh, surface, repaired):
     ways = np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]])
     counts = np.unique(np.sort(ways, axis=1), axis=0, return_counts=True)[1]
     oriented = len(np.unique(ways, axis=0)) == len(ways)
-    envelope = judge.to_polydata(points, facets)
+    envelope = judge.to_polydata(*(curved_boundary(mesh, facets) if order == 2 else (points, facets)))
     of_truth = judge.samples(truth)
     there = judge.distances(outside(of_truth, envelope) if repaired else of_truth, envelope)
     of_envelope = judge.samples(envelope)
     back = judge.distances(of_envelope, truth)
     filled = {}
+    if order == 2:
+        filled["jacobian"] = json.loads(mesh.with_suffix(".json").read_text())["figures"]["least_jacobian_ratio"]
     kept = mesh.with_name(mesh.stem + "_repaired.ply")
     if repaired and kept.exists():
         new = judge.read_surface(str(kept))
         both = np.concatenate([judge.distances(judge.samples(new), envelope), judge.distances(of_envelope, new)])
-        filled = {"filled_rms": np.sqrt(np.mean(both ** 2)), "filled_max": both.max()}
+        filled |= {"filled_rms": np.sqrt(np.mean(both ** 2)), "filled_max": both.max()}
     return {**filled, "tets": len(tets), "aspect_mean": aspect.mean(), "aspect_p05": np.percentile(aspect, 5), "aspect_min": aspect.min(),
             "dihedral_min": dihedral.min(), "dihedral_max": dihedral.max(), "inverted": (volumes <= 0).sum(),
             "envelope_rms": np.sqrt(np.mean(np.concatenate([there, back]) ** 2)), "envelope_max": max(there.max(), back.max()),
@@ -187,6 +211,7 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_meshing"))
     parser.add_argument("--layers", type=int)
     parser.add_argument("--tets", type=int)
+    parser.add_argument("--order", type=int, choices=(1, 2), default=1)
     parser.add_argument("--only", default="")
     parser.add_argument("--all-cartilages", action="store_true", help="sacroiliac ones too")
     parser.add_argument("--bodies", action="store_true", help="all but libhip's femoral and acetabular cartilages")
@@ -204,9 +229,11 @@ def main():
 
     arguments.work.mkdir(parents=True, exist_ok=True)
     of_any_size = arguments.bodies or arguments.labels
-    limits = MECHANICS if arguments.layers else BODY if of_any_size else PAPER
+    mechanics = TEN_NODE if arguments.order == 2 else MECHANICS
+    limits = mechanics if arguments.layers else BODY if of_any_size else PAPER
     most = arguments.tets or (None if of_any_size else limits["tets"][0])
     options = (["--tets", str(most)] if most else []) + (["--layers", str(arguments.layers)] if arguments.layers else [])
+    options += ["--order", "2"] if arguments.order == 2 else []
     wanted = [w for w in arguments.only.split(",") if w]
     surfaces = (arguments.surfaces or (bodies(arguments.shared) if arguments.bodies else []) or
                 (label_surfaces(arguments.shared, arguments.work) if arguments.labels else []) or
@@ -223,7 +250,7 @@ def main():
         n_surfaces += 1
         try:
             seconds, megabytes, repaired = run_mesh(arguments.coxa, surface, out, options, arguments.seconds)
-            figures = {**figures_of(judge, out, surface, repaired), "seconds": seconds, "megabytes": megabytes}
+            figures = {**figures_of(judge, out, surface, repaired, arguments.order), "seconds": seconds, "megabytes": megabytes}
         except RuntimeError as error:
             print(f"{name:34s} FAILED {error}", flush=True)
             kept.write_text(json.dumps({"failed": str(error)}))
