@@ -10,7 +10,8 @@ envelope error against the repaired surface is told too.  Every outcome is kept 
 the mesh; --table meshes nothing and shows all kept outcomes by class of body.
 
 Figures by ../shared/eval/mesh_quality.py; time is processor time of `coxa mesh`, so that neighbours on the machine do not count,
-and memory its largest resident set.  Default limits without --layers: those of the paper mesh; with it: of the mechanics mesh.
+and memory its largest resident set.  Default limits without --layers: those of the paper mesh; with it, or with
+--order 2: of the mechanics mesh.
 With --order 2 elements have ten nodes: each facet of the boundary is judged as four triangles by its mid-edge nodes, and `jacobian`
 is the least Jacobian determinant over that of the corners, a bound that coxa gives for the whole of each element.
 """
@@ -229,8 +230,7 @@ def main():
 
     arguments.work.mkdir(parents=True, exist_ok=True)
     of_any_size = arguments.bodies or arguments.labels
-    mechanics = TEN_NODE if arguments.order == 2 else MECHANICS
-    limits = mechanics if arguments.layers else BODY if of_any_size else PAPER
+    limits = BODY if of_any_size else TEN_NODE if arguments.order == 2 else MECHANICS if arguments.layers else PAPER
     most = arguments.tets or (None if of_any_size else limits["tets"][0])
     options = (["--tets", str(most)] if most else []) + (["--layers", str(arguments.layers)] if arguments.layers else [])
     options += ["--order", "2"] if arguments.order == 2 else []
