@@ -6,6 +6,7 @@
 #include <coxa/pipeline/structures.h>
 #include <coxa/segment/part_bodies.h>
 #include <coxa/shape/build_atlas.h>
+#include <coxa/shape/carve.h>
 #include <coxa/shape/labrum.h>
 #include <coxa/shape/ligaments.h>
 
@@ -110,13 +111,21 @@ class Maker {
   std::map<std::string, TriMesh> made;
   std::vector<std::string> failures;
 
-  /// Takes flat triangles out of curved bones and cartilages. @returns the depth that is left, mm
+  /// Takes everything out of bones, cartilages and what was taken out before. @returns the depth
+  /// that is left, mm
   double parted() {
-    std::vector<const TriMesh*> firm;
-    for (const char* name : kHosts) firm.push_back(&hip_[name]);
+    std::vector<const TriMesh*> hosts;
+    for (const char* name : kHosts) hosts.push_back(&hip_[name]);
+    std::vector<const TriMesh*> all = hosts;
     double deepest = 0.0;
-    for (auto& [name, mesh] : made)
-      deepest = std::max(deepest, segment::update_parted({{&mesh}}, firm));
+    for (auto& [name, mesh] : made) {
+      // a band that crosses others would be cut through: it stays in them, but in no bone
+      const bool out_of_all = carve(mesh, all);
+      if (!out_of_all && !carve(mesh, hosts))
+        failures.push_back(name + " lies in bone or cartilage for the most part");
+      deepest = std::max(deepest, segment::update_parted({{&mesh}}, out_of_all ? all : hosts));
+      all.push_back(&mesh);
+    }
     return deepest;
   }
 
@@ -142,6 +151,16 @@ class Maker {
   }
 
  private:
+  /// @returns whether enough is left
+  static bool carve(TriMesh& mesh, const std::vector<const TriMesh*>& obstacles) {
+    try {
+      mesh = shape::carved(mesh, obstacles);
+      return true;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::below_quality) throw;
+      return false;
+    }
+  }
   bool is_wanted(const std::string& name) const {
     return std::find(wanted_.begin(), wanted_.end(), name) != wanted_.end();
   }
@@ -190,8 +209,8 @@ void add_generic(SurfaceSet& surfaces, const std::vector<std::string>& wanted, S
   }
   const double depth = maker.parted();
   if (depth > kToleratedDepth)
-    maker.failures.push_back(
-        join_text("labrum or ligaments enter bone or cartilage by up to ", depth, " mm"));
+    maker.failures.push_back(join_text(
+        "labrum or ligaments enter bone, cartilage or each other by up to ", depth, " mm"));
   std::string list;
   for (const auto& [name, mesh] : maker.made) {
     surfaces[name] = generic_surface(hip.turned(mesh));

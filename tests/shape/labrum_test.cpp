@@ -1,15 +1,20 @@
 #include <coxa/shape/labrum.h>
 
+#include <coxa/shape/carve.h>
+
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
 #include <coxa/geom/triangle_tree.h>
 #include <coxa/mesh/iso_surface.h>
+#include <coxa/mesh/measures.h>
 #include <coxa/mesh/validate.h>
 #include <coxa/shape/ligaments.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
+
+#include "support/shapes.h"
 
 namespace coxa::shape {
 
@@ -102,6 +107,25 @@ TEST_F(Socket, LabrumIsTheSameForOneAndEightThreads) {
   const TriMesh one = make_labrum(rim_, bone_, cartilage_, {head_}, {.spacing = 4.0});
   set_thread_count(8);
   EXPECT_EQ(one.points, make_labrum(rim_, bone_, cartilage_, {head_}, {.spacing = 4.0}).points);
+}
+TEST(Carved, LeavesWhatLiesOutOfTheOthersAndIsNearlyTheExactVolume) {
+  const TriMesh ball = test::icosphere(3, 10.0);
+  const TriMesh other = test::moved(test::icosphere(3, 10.0), {Mat3::Identity(), Vec3(12, 0, 0)});
+  const TriMesh rest = carved(ball, {&other}, {.gap = 0.2, .spacing = 0.6});
+  EXPECT_TRUE(validate(rest).valid()) << validate(rest).text();
+  EXPECT_LT(deepest(rest, other), 0.0);
+  // less the lens: two caps of the spheres, one of them larger by the gap
+  const auto cap = [](double r, double h) { return kPi * h * h * (3.0 * r - h) / 3.0; };
+  const double middle = (144.0 + 100.0 - 10.2 * 10.2) / 24.0;  // of their common circle, along x
+  const double lens = cap(10.0, 10.0 - middle) + cap(10.2, 10.2 - (12.0 - middle));
+  EXPECT_NEAR(volume(rest), volume(ball) - lens, 0.015 * volume(ball));
+}
+TEST(Carved, StaysAsItIsWhereNothingIsInTheWayAndSaysWhereLittleIsLeft) {
+  const TriMesh ball = test::icosphere(3, 10.0);
+  const TriMesh far = test::moved(ball, {Mat3::Identity(), Vec3(25, 0, 0)});
+  EXPECT_EQ(carved(ball, {&far}).points, ball.points);
+  const TriMesh near = test::moved(ball, {Mat3::Identity(), Vec3(5, 0, 0)});
+  EXPECT_THROW(carved(ball, {&near}), Error);
 }
 TEST_F(Socket, WithoutANotchIsNoSocket) {
   try {

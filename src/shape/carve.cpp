@@ -1,0 +1,127 @@
+#include <coxa/shape/carve.h>
+
+#include <coxa/core/error.h>
+#include <coxa/core/parallel.h>
+#include <coxa/geom/triangle_tree.h>
+#include <coxa/mesh/iso_surface.h>
+#include <coxa/mesh/measures.h>
+#include <coxa/mesh/rebuild.h>
+#include <coxa/mesh/topology.h>
+#include <coxa/mesh/voxelize.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace coxa::shape {
+namespace {
+
+// mm: farther from a surface only the side counts
+constexpr double kBand = 1.5;
+
+struct Grid {
+  std::array<Index, 3> size{};
+  Vec3 origin = Vec3::Zero();
+  double spacing = 1.0;
+
+  Grid(const TriMesh& mesh, double h) : spacing(h) {
+    const Bounds box = bounds(mesh.points);
+    // a third of a cell off the corner: samples then rarely lie on flat faces
+    origin = box.low.array() - 1.33 * h;
+    for (int k = 0; k < 3; ++k)
+      size[static_cast<std::size_t>(k)] =
+          static_cast<Index>(std::ceil((box.high[k] - origin[k]) / h)) + 2;
+  }
+  Vec3 at(Index i, Index j, Index k) const { return origin + spacing * Vec3(i, j, k); }
+  std::size_t offset(Index i, Index j, Index k) const {
+    return static_cast<std::size_t>(i) +
+           static_cast<std::size_t>(size[0]) *
+               (static_cast<std::size_t>(j) +
+                static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(k));
+  }
+  template <class Body>
+  void for_samples(const Body& body) const {
+    parallel_for(size[2], [&](Index k) {
+      for (Index j = 0; j < size[1]; ++j)
+        for (Index i = 0; i < size[0]; ++i) body(offset(i, j, k), at(i, j, k));
+    });
+  }
+};
+
+/// Distance into the surface, negative outside, no more than the band to either side.
+std::vector<float> depths(const TriMesh& mesh, const Grid& grid) {
+  const auto inside = inside_samples(
+      mesh, grid.size, [&](const Vec3& p) { return Vec3((p - grid.origin) / grid.spacing); });
+  const TriangleTree tree(mesh.points, mesh.triangles);
+  std::vector<float> values(inside.size());
+  grid.for_samples([&](std::size_t n, const Vec3& p) {
+    const auto near = tree.nearest_within(p, kBand);
+    const double distance = near ? std::sqrt(near->squared_distance) : kBand;
+    values[n] = static_cast<float>(inside[n] != 0 ? distance : -distance);
+  });
+  return values;
+}
+
+/// Lowers the depths to the distance from the obstacle less the gap. @returns whether any was
+bool lower(const TriMesh& obstacle, double gap, const Grid& grid, std::vector<float>& values) {
+  const TriangleTree tree(obstacle.points, obstacle.triangles);
+  const auto inside = inside_samples(
+      obstacle, grid.size, [&](const Vec3& p) { return Vec3((p - grid.origin) / grid.spacing); });
+  std::vector<char> lowered(values.size(), 0);
+  grid.for_samples([&](std::size_t n, const Vec3& p) {
+    if (values[n] < -0.99 * kBand) return;
+    const auto near = tree.nearest_within(p, kBand);
+    if (!near && inside[n] == 0) return;
+    const double distance = near ? std::sqrt(near->squared_distance) : kBand;
+    const auto room = static_cast<float>((inside[n] != 0 ? -distance : distance) - gap);
+    if (room >= values[n]) return;
+    lowered[n] = values[n] > 0.0F;
+    values[n] = room;
+  });
+  return std::any_of(lowered.begin(), lowered.end(), [](char c) { return c != 0; });
+}
+
+TriMesh largest_piece(const TriMesh& mesh) {
+  const std::vector<Index> piece = triangle_components(mesh);
+  Index largest = 0;
+  piece_areas(mesh, piece).maxCoeff(&largest);
+  std::vector<Index> kept;
+  for (Index t = 0; t < mesh.n_triangles(); ++t)
+    if (piece[static_cast<std::size_t>(t)] == largest) kept.push_back(t);
+  return sub_mesh(mesh, kept).mesh;
+}
+
+}  // namespace
+
+TriMesh carved(const TriMesh& mesh, const std::vector<const TriMesh*>& obstacles,
+               const CarveOptions& options) {
+  require(options.gap >= 0.0 && options.spacing > 0.0 && options.edge > 0.0,
+          "gap, spacing and edge of a carved surface must be positive");
+  require(options.least_kept > 0.0 && options.least_kept <= 1.0,
+          "least_kept must be in (0, 1], got ", options.least_kept);
+  const Grid grid(mesh, options.spacing);
+  std::vector<float> values = depths(mesh, grid);
+  bool any = false;
+  for (const TriMesh* obstacle : obstacles)
+    any = lower(*obstacle, options.gap, grid, values) || any;
+  if (!any) return mesh;
+  const double before = volume(mesh);
+  const bool left = std::any_of(values.begin(), values.end(), [](float v) { return v > 0.0F; });
+  const TriMesh raw =
+      left ? largest_piece(
+                 iso_surface(grid.size, values, 0.0,
+                             [&](const Vec3& i) { return Vec3(grid.origin + grid.spacing * i); }))
+           : TriMesh{};
+  const double share = left ? volume(raw) / before : 0.0;
+  if (share < options.least_kept)
+    fail(ErrorCode::below_quality, "only ", std::lround(100.0 * share),
+         " % of the volume lies in one piece out of everything else");
+  // rims sharper than the grid would fold when they are remeshed
+  return largest_piece(rebuild(raw, {.spacing = options.spacing,
+                                     .opening = options.spacing,
+                                     .target_edge = options.edge,
+                                     .max_move = kInfinity})
+                           .mesh);
+}
+
+}  // namespace coxa::shape
