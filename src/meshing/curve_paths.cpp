@@ -160,7 +160,7 @@ std::vector<FeatureNode> choose_paths(TetGrid& grid, const FeatureCurves& featur
 
 void draw_to_features(TetGrid& grid, const FeatureCurves& features,
                       const std::vector<FeatureNode>& chosen) {
-  constexpr double kWorst = 15.0;  // shape energy allowed just then
+  constexpr double kWorst = 60.0;  // shape energy allowed just then
   for (const FeatureNode& f : chosen) {
     const Index v = f.node;
     if (grid.kinds[at(v)] != NodeKind::first_corner || grid.around[at(v)].empty()) continue;
