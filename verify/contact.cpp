@@ -14,6 +14,7 @@
 
 #include "cases.h"
 #include "joint/layers.h"
+#include "joint/movements.h"
 #include "shapes.h"
 
 namespace coxa::verify {
@@ -246,6 +247,19 @@ double slide(double slope, double coefficient, double time) {
   return momentum / particles.mass.sum();
 }
 
+/// Moment of friction on a cup in which a ball turns by `turn` about the axis, pressed into it.
+double turning_moment(double force, double friction, double turn) {
+  joint::JointModel model = test::make_ball_in_cup();
+  model.friction = friction;
+  const auto motion = test::movement_to({0.0, 0.0, turn}, 2);
+  const joint::JointResult result = joint::simulate(
+      model, motion, joint::passive_examination(model, force), {.centre_shift = std::nullopt});
+  const joint::FrameResult& frame = result.frames.back();
+  if (frame.status != joint::FrameStatus::converged)
+    fail(ErrorCode::no_convergence, "turning ball: ", frame.reason);
+  return frame.balance.friction_moment.norm();
+}
+
 }  // namespace
 
 Rows slope() {
@@ -261,6 +275,13 @@ Rows slope() {
   rows.push_back({"slope 15 degrees, coefficient 0.3: over that without friction", 0.0,
                   slide(radians(15.0), 0.3, kTime) / (kGravity * kTime * std::sin(radians(15.0))),
                   1e-3});
+  // pressure as the cosine of the angle on a cap of 60 degrees and radius 25 mm: mu F R sin^3 /
+  // (1 - cos^3)
+  constexpr double kForce = 500.0, kFriction = 0.05;
+  const double sine = std::sin(radians(60.0));
+  rows.push_back({"ball turning in a cup, coefficient 0.05: moment, N mm",
+                  kFriction * kForce * 25.0 * sine * sine * sine / (1.0 - 0.125),
+                  turning_moment(kForce, kFriction, radians(6.0)), 0.01});
   return rows;
 }
 
