@@ -18,6 +18,8 @@ namespace {
 
 // mm: farther from a surface only the side counts
 constexpr double kBand = 1.5;
+// share of what is left that one piece has at least, the others being crumbs
+constexpr double kWhole = 0.95;
 
 struct Grid {
   std::array<Index, 3> size{};
@@ -81,14 +83,37 @@ bool lower(const TriMesh& obstacle, double gap, const Grid& grid, std::vector<fl
   return std::any_of(lowered.begin(), lowered.end(), [](char c) { return c != 0; });
 }
 
-TriMesh largest_piece(const TriMesh& mesh) {
+struct Piece {
+  TriMesh mesh;
+  double share = 0.0;  ///< of all pieces' volume
+};
+
+Piece largest_piece(const TriMesh& mesh) {
   const std::vector<Index> piece = triangle_components(mesh);
   Index largest = 0;
   piece_areas(mesh, piece).maxCoeff(&largest);
   std::vector<Index> kept;
   for (Index t = 0; t < mesh.n_triangles(); ++t)
     if (piece[static_cast<std::size_t>(t)] == largest) kept.push_back(t);
-  return sub_mesh(mesh, kept).mesh;
+  TriMesh one = sub_mesh(mesh, kept).mesh;
+  const double share = volume(one) / volume(mesh);
+  return {std::move(one), share};
+}
+
+/// Even triangles. Rims sharper than the grid would fold, so they are rounded, but no more than
+/// leaves it in one piece.
+Piece even_piece(const TriMesh& raw, const CarveOptions& options) {
+  Piece best;
+  for (const double opening : {1.0, 0.5, 0.25}) {
+    Piece piece = largest_piece(rebuild(raw, {.spacing = options.spacing,
+                                              .opening = opening * options.spacing,
+                                              .target_edge = options.edge,
+                                              .max_move = kInfinity})
+                                    .mesh);
+    if (piece.share > best.share) best = std::move(piece);
+    if (best.share >= kWhole) break;
+  }
+  return best;
 }
 
 }  // namespace
@@ -105,23 +130,18 @@ TriMesh carved(const TriMesh& mesh, const std::vector<const TriMesh*>& obstacles
   for (const TriMesh* obstacle : obstacles)
     any = lower(*obstacle, options.gap, grid, values) || any;
   if (!any) return mesh;
-  const double before = volume(mesh);
   const bool left = std::any_of(values.begin(), values.end(), [](float v) { return v > 0.0F; });
-  const TriMesh raw =
-      left ? largest_piece(
-                 iso_surface(grid.size, values, 0.0,
-                             [&](const Vec3& i) { return Vec3(grid.origin + grid.spacing * i); }))
-           : TriMesh{};
-  const double share = left ? volume(raw) / before : 0.0;
-  if (share < options.least_kept)
-    fail(ErrorCode::below_quality, "only ", std::lround(100.0 * share),
-         " % of the volume lies in one piece out of everything else");
-  // rims sharper than the grid would fold when they are remeshed
-  return largest_piece(rebuild(raw, {.spacing = options.spacing,
-                                     .opening = options.spacing,
-                                     .target_edge = options.edge,
-                                     .max_move = kInfinity})
-                           .mesh);
+  if (!left) fail(ErrorCode::below_quality, "nothing of it lies out of everything else");
+  const TriMesh raw = iso_surface(
+      grid.size, values, 0.0, [&](const Vec3& i) { return Vec3(grid.origin + grid.spacing * i); });
+  const double kept = volume(raw) / volume(mesh);
+  Piece piece;
+  if (kept >= options.least_kept) piece = even_piece(raw, options);
+  if (kept < options.least_kept || piece.share < kWhole)
+    fail(ErrorCode::below_quality, "what lies out of everything else is ",
+         std::lround(100.0 * kept), " % of the volume, ", std::lround(100.0 * piece.share),
+         " % of that in one piece");
+  return piece.mesh;
 }
 
 }  // namespace coxa::shape

@@ -10,7 +10,7 @@ struct CarveOptions {
   double gap = 0.15;        ///< mm, >= 0, kept from every obstacle
   double spacing = 0.4;     ///< mm, > 0, of the grid; what is left thinner than it is lost
   double edge = 1.0;        ///< mm, > 0, of the new triangles
-  double least_kept = 0.7;  ///< share of the volume, in (0, 1], that must be left in one piece
+  double least_kept = 0.7;  ///< share of the volume, in (0, 1], that must be left
 };
 
 /// What a closed surface encloses less what lies in the obstacles or nearer to them than the gap.
@@ -19,7 +19,8 @@ struct CarveOptions {
 /// outcome cannot fold, however the surfaces cross, and clears flat triangles as well as vertices.
 /// @param obstacles closed, outward
 /// @returns closed, outward; the surface as it is where nothing of it is in the way
-/// @throws Error below_quality if less than `least_kept` of the volume is left in one piece
+/// @throws Error below_quality if less than `least_kept` of the volume is left, or that is in
+/// pieces
 TriMesh carved(const TriMesh& mesh, const std::vector<const TriMesh*>& obstacles,
                const CarveOptions& options = {});
 
