@@ -92,6 +92,8 @@ void add_labrum(const fs::path& segment_folder, const TriMesh& hip_bone,
         usable_surface(io::read_surface(labrum), "acetabular_labrum", record, monitor);
     meshing::MeshingResult result =
         filled_surface(surface, coarse, Faces::any, "acetabular_labrum", record, monitor);
+    // its base lies on the bone, none of the faces that a sheet would have
+    std::fill(result.mesh.facet_tags.begin(), result.mesh.facet_tags.end(), FacetTag::untagged);
     tag_for_bone(result.mesh, hip_bone, "acetabular_labrum: ", record);
     add_figures(result, "acetabular_labrum", record);
     io::write_tets(partial / "acetabular_labrum.vtu", result.mesh);
