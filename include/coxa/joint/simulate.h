@@ -28,8 +28,8 @@ struct JointOptions {
 ///
 /// The acetabular cartilage's bone side is held, the femoral one moves with the femur: rotation
 /// from the motion about the joint centre, translation from force balance (or prescribed).
-/// Frictionless contact between the articular sides. Starts from the image pose, in gap or overlap,
-/// and follows the movement in sub-steps.
+/// Contact between the articular sides, with the model's friction. Starts from the image pose, in
+/// gap or overlap, and follows the movement in sub-steps.
 ///
 /// @throws Error bad_input, bad_mesh (model, load, motion, options); cancelled
 /// @note   a frame that does not converge is returned as failed with the reason; bit-identical for
