@@ -2,6 +2,7 @@
 
 #include <coxa/core/error.h>
 #include <coxa/segment/placement.h>
+#include <coxa/segment/separate_bodies.h>
 
 #include <algorithm>
 #include <cmath>
@@ -86,11 +87,29 @@ std::map<std::string, double> landmark_distances(const Hip& hip, const shape::At
   return distances;
 }
 
-SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& options) {
+/// No muscle is in another, nor in a bone or cartilage.
+void separate_muscles(const Hip& hip, std::vector<Surface>& surfaces,
+                      std::vector<std::string>& warnings, const Monitor& monitor) {
+  std::vector<Separable> muscles;
+  std::vector<const TriMesh*> firm;
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    const Body& body = hip.bodies()[s];
+    if (hip.is_muscle(s))
+      muscles.push_back({body.model->name, &surfaces[s], quality_of(body).correlation});
+    else
+      firm.push_back(&surfaces[s].mesh);
+  }
+  for (std::string& text : update_separated(std::move(muscles), firm, monitor))
+    warnings.push_back(std::move(text));
+}
+
+SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& options,
+                          const Monitor& monitor) {
   SegmentResult result;
   double bone_confidence = 0.0, n_bones = 0.0;
   std::string muscles_cut;
-  const std::vector<Surface> surfaces = hip.surfaces(result.warnings);
+  std::vector<Surface> surfaces = hip.surfaces(result.warnings);
+  separate_muscles(hip, surfaces, result.warnings, monitor);
   for (std::size_t s = 0; s < hip.bodies().size(); ++s) {
     const Body& body = hip.bodies()[s];
     const StructureQuality quality = quality_of(body);
@@ -155,7 +174,7 @@ SegmentResult segment(const std::vector<Volume>& volumes, const shape::Atlas& at
   hip.segment_layers(
       part_of(monitor, "segment cartilages", 0.7 * bones_and_layers, bones_and_layers));
   hip.segment_muscles(part_of(monitor, "segment muscles", bones_and_layers, 1.0));
-  SegmentResult result = make_result(hip, side, options);
+  SegmentResult result = make_result(hip, side, options, monitor);
   result.landmark_distances = landmark_distances(hip, atlas, ours);
   return result;
 }

@@ -16,10 +16,8 @@
 namespace coxa::shape {
 namespace {
 
-// mm: farther from a surface only the side counts
-constexpr double kBand = 1.5;
-// share of what is left that one piece has at least, the others being crumbs
-constexpr double kWhole = 0.95;
+// grid spacings: farther from a surface only the side counts
+constexpr double kBand = 4.0;
 
 struct Grid {
   std::array<Index, 3> size{};
@@ -55,10 +53,11 @@ std::vector<float> depths(const TriMesh& mesh, const Grid& grid) {
   const auto inside = inside_samples(
       mesh, grid.size, [&](const Vec3& p) { return Vec3((p - grid.origin) / grid.spacing); });
   const TriangleTree tree(mesh.points, mesh.triangles);
+  const double band = kBand * grid.spacing;
   std::vector<float> values(inside.size());
   grid.for_samples([&](std::size_t n, const Vec3& p) {
-    const auto near = tree.nearest_within(p, kBand);
-    const double distance = near ? std::sqrt(near->squared_distance) : kBand;
+    const auto near = tree.nearest_within(p, band);
+    const double distance = near ? std::sqrt(near->squared_distance) : band;
     values[n] = static_cast<float>(inside[n] != 0 ? distance : -distance);
   });
   return values;
@@ -69,12 +68,13 @@ bool lower(const TriMesh& obstacle, double gap, const Grid& grid, std::vector<fl
   const TriangleTree tree(obstacle.points, obstacle.triangles);
   const auto inside = inside_samples(
       obstacle, grid.size, [&](const Vec3& p) { return Vec3((p - grid.origin) / grid.spacing); });
+  const double band = kBand * grid.spacing;
   std::vector<char> lowered(values.size(), 0);
   grid.for_samples([&](std::size_t n, const Vec3& p) {
-    if (values[n] < -0.99 * kBand) return;
-    const auto near = tree.nearest_within(p, kBand);
+    if (values[n] < -0.99 * band) return;
+    const auto near = tree.nearest_within(p, band);
     if (!near && inside[n] == 0) return;
-    const double distance = near ? std::sqrt(near->squared_distance) : kBand;
+    const double distance = near ? std::sqrt(near->squared_distance) : band;
     const auto room = static_cast<float>((inside[n] != 0 ? -distance : distance) - gap);
     if (room >= values[n]) return;
     lowered[n] = values[n] > 0.0F;
@@ -88,7 +88,9 @@ struct Piece {
   double share = 0.0;  ///< of all pieces' volume
 };
 
-Piece largest_piece(const TriMesh& mesh) {
+/// The largest piece, unless all are wanted.
+Piece wanted_piece(TriMesh mesh, const CarveOptions& options) {
+  if (options.least_whole == 0.0) return {std::move(mesh), 1.0};
   const std::vector<Index> piece = triangle_components(mesh);
   Index largest = 0;
   piece_areas(mesh, piece).maxCoeff(&largest);
@@ -105,13 +107,14 @@ Piece largest_piece(const TriMesh& mesh) {
 Piece even_piece(const TriMesh& raw, const CarveOptions& options) {
   Piece best;
   for (const double opening : {1.0, 0.5, 0.25}) {
-    Piece piece = largest_piece(rebuild(raw, {.spacing = options.spacing,
-                                              .opening = opening * options.spacing,
-                                              .target_edge = options.edge,
-                                              .max_move = kInfinity})
-                                    .mesh);
+    Piece piece = wanted_piece(rebuild(raw, {.spacing = options.spacing,
+                                             .opening = opening * options.spacing,
+                                             .target_edge = options.edge,
+                                             .max_move = kInfinity})
+                                   .mesh,
+                               options);
     if (piece.share > best.share) best = std::move(piece);
-    if (best.share >= kWhole) break;
+    if (best.share >= options.least_whole) break;
   }
   return best;
 }
@@ -124,6 +127,8 @@ TriMesh carved(const TriMesh& mesh, const std::vector<const TriMesh*>& obstacles
           "gap, spacing and edge of a carved surface must be positive");
   require(options.least_kept > 0.0 && options.least_kept <= 1.0,
           "least_kept must be in (0, 1], got ", options.least_kept);
+  require(options.least_whole >= 0.0 && options.least_whole <= 1.0,
+          "least_whole must be in [0, 1], got ", options.least_whole);
   const Grid grid(mesh, options.spacing);
   std::vector<float> values = depths(mesh, grid);
   bool any = false;
@@ -137,7 +142,7 @@ TriMesh carved(const TriMesh& mesh, const std::vector<const TriMesh*>& obstacles
   const double kept = volume(raw) / volume(mesh);
   Piece piece;
   if (kept >= options.least_kept) piece = even_piece(raw, options);
-  if (kept < options.least_kept || piece.share < kWhole)
+  if (kept < options.least_kept || piece.share < options.least_whole)
     fail(ErrorCode::below_quality, "what lies out of everything else is ",
          std::lround(100.0 * kept), " % of the volume, ", std::lround(100.0 * piece.share),
          " % of that in one piece");

@@ -7,10 +7,12 @@
 namespace coxa::shape {
 
 struct CarveOptions {
-  double gap = 0.15;        ///< mm, >= 0, kept from every obstacle
-  double spacing = 0.4;     ///< mm, > 0, of the grid; what is left thinner than it is lost
-  double edge = 1.0;        ///< mm, > 0, of the new triangles
-  double least_kept = 0.7;  ///< share of the volume, in (0, 1], that must be left
+  double gap = 0.15;          ///< mm, >= 0, kept from every obstacle
+  double spacing = 0.4;       ///< mm, > 0, of the grid; what is left thinner than it is lost
+  double edge = 1.0;          ///< mm, > 0, of the new triangles
+  double least_kept = 0.7;    ///< share of the volume, in (0, 1], that must be left
+  double least_whole = 0.95;  ///< share of that, in [0, 1], that one piece must be; others are
+                              ///< lost, unless it is 0: then all stay
 };
 
 /// What a closed surface encloses less what lies in the obstacles or nearer to them than the gap.

@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""Segments the bones of virtual patients with and without landmarks and prints how far the two results lie apart.
+
+usage: evaluate_start.py [--coxa build/release/coxa] [--work DIR] [--count 10] [--first 101] [--voxel 1.5] [--threads 1]
+
+Patients are drawn by coxa phantom with the seeds first, first + 1, …, sides in turn, off the model by its default; a result without
+landmarks is the same as the other where the vertices of femur and hip bone lie at most 0.1 mm apart on average.  One that is not
+is flagged where it is refused or its record says "low confidence".
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SAME = 0.1  # mm
+
+
+def segmented(folder, name, side, landmarks, options):
+    """The record, or the words of the refusal."""
+    out = folder / name
+    if not (out / "segment.json").exists():
+        command = [options.coxa, "segment", "--image", folder / "image.nii.gz", "--side", side, "--structures", "bones", "--quiet",
+                   "--threads", options.threads, "--out", out] + (["--landmarks", landmarks] if landmarks else [])
+        done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
+        if done.returncode:
+            return " ".join(done.stderr.split())[:120]
+    return json.loads((out / "segment.json").read_text())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--coxa", default=ROOT / "build/release/coxa")
+    parser.add_argument("--shared", type=pathlib.Path, default=ROOT.parent / "shared")
+    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_start"))
+    parser.add_argument("--count", type=int, default=10)
+    parser.add_argument("--first", type=int, default=101)
+    parser.add_argument("--voxel", type=float, default=1.5)
+    parser.add_argument("--threads", default="1")
+    options = parser.parse_args()
+    sys.path.insert(0, str(options.shared / "eval"))
+    import surface_distance as surfaces
+    options.work.mkdir(parents=True, exist_ok=True)
+    n_same = n_flagged = n = 0
+    for seed in range(options.first, options.first + options.count):
+        side = ("left", "right")[seed % 2]
+        folder = options.work / f"patient_{seed}"
+        if not (folder / "image.nii.gz").exists():
+            subprocess.run([str(c) for c in [options.coxa, "phantom", "--side", side, "--seed", seed, "--voxel", options.voxel, "--quiet",
+                                             "--threads", options.threads, "--out", folder]], check=True, capture_output=True)
+        marks = folder / "landmarks.mrk.json"
+        given, none = (segmented(folder, name, side, m, options) for name, m in (("with", marks), ("without", None)))
+        n += 1
+        if isinstance(given, str) or isinstance(none, str):
+            n_flagged += 1
+            print(f"{seed} {side}: refused: {given if isinstance(given, str) else none}", flush=True)
+            continue
+        points = lambda name, bone: surfaces.arrays(surfaces.read(str(folder / name / f"{bone}.ply")))[0]
+        apart = {b: np.linalg.norm(points("with", b) - points("without", b), axis=1).mean() for b in ("femur", "hip_bone")}
+        same = max(apart.values()) <= SAME
+        low = any("low confidence" in w for w in none["warnings"])
+        n_same += same
+        n_flagged += not same and low
+        print(f"{seed} {side}: femur {apart['femur']:.3f} mm apart, hip bone {apart['hip_bone']:.3f} mm; quality "
+              f"{given['figures']['quality']:.2f}, {none['figures']['quality']:.2f}{'; low confidence' if low else ''}", flush=True)
+    print(f"{n_same} of {n} the same, {n_flagged} flagged, {n - n_same - n_flagged} neither")
+
+
+if __name__ == "__main__":
+    main()
