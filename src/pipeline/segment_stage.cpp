@@ -18,6 +18,7 @@
 
 #include "generic_structures.h"
 #include "label_edits.h"
+#include "segment_calibration.h"
 
 namespace coxa::pipeline {
 namespace fs = std::filesystem;
@@ -96,6 +97,7 @@ Record with_corrections(Record record, const SegmentRequest& request) {
 
 /// What the image is searched for: generic structures are made afterwards, on bones and cartilages.
 segment::SegmentOptions options_of_search(segment::SegmentOptions options) {
+  options.calibrations = segment_calibrations();
   auto& names = options.structures;
   if (generic_among(names).empty()) return options;
   std::erase_if(names, is_generic);
@@ -105,6 +107,19 @@ segment::SegmentOptions options_of_search(segment::SegmentOptions options) {
   return options;
 }
 
+/// Of the vertices that the image shows; of all where it shows none.
+double median_in_view(const Surface& surface, const std::string& field) {
+  const VecX &values = surface.fields.at(field), &completed = surface.fields.at("completed");
+  std::vector<double> seen;
+  for (Eigen::Index v = 0; v < values.size(); ++v) {
+    if (completed[v] == 0.0) seen.push_back(values[v]);
+  }
+  if (seen.empty()) seen.assign(values.begin(), values.end());
+  const auto middle = seen.begin() + static_cast<std::ptrdiff_t>(seen.size() / 2);
+  std::nth_element(seen.begin(), middle, seen.end());
+  return *middle;
+}
+
 void add_figures(const segment::SegmentResult& result, Record& record) {
   record.figures["quality"] = result.quality;
   for (const auto& [name, q] : result.structures) {
@@ -112,6 +127,10 @@ void add_figures(const segment::SegmentResult& result, Record& record) {
     record.figures[name + "_residual_mm"] = q.residual;
     record.figures[name + "_in_view_share"] = q.in_view;
     record.figures[name + "_confidence"] = q.confidence;
+  }
+  for (const auto& [name, surface] : result.surfaces) {
+    if (surface.fields.contains("uncertainty_mm"))
+      record.figures[name + "_uncertainty_mm"] = median_in_view(surface, "uncertainty_mm");
   }
   for (const auto& [name, distance] : result.landmark_distances) {
     record.figures["landmark_" + name + "_distance_mm"] = distance;

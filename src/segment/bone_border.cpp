@@ -112,6 +112,18 @@ Bands bands_of(const TriMesh& bone, const Points& normals, const Adjacency& neig
   return bands;
 }
 
+/// Deviations of the border by the weights of a vertex and its neighbours.
+VecX border_deviations(const Adjacency& neighbours, const VecX& weight) {
+  VecX deviation(weight.size());
+  for (Index v = 0; v < neighbours.size(); ++v) {
+    double sum = weight[v];
+    for (const Index w : neighbours[v]) sum += weight[w];
+    const double mean = sum / (static_cast<double>(neighbours[v].size()) + 1.0);
+    deviation[v] = 1.0 / std::sqrt(mean + 1.0 / (kUnknownBorder * kUnknownBorder));
+  }
+  return deviation;
+}
+
 std::vector<bool> covered_vertices(const BareBone& bare) {
   std::vector<bool> covered(static_cast<std::size_t>(bare.bone->n_vertices()), false);
   for (const TriMesh* layer : bare.layers) {
@@ -147,6 +159,7 @@ void update_border(BareBone& bare, std::vector<BorderRay>& rays, const BorderMod
   }
   const VecX move = smooth_values(neighbours, found, weight, 1.0 / (kBorderChange * kBorderChange),
                                   1.0 / (kBefore * kBefore), VecX::Zero(bone.n_vertices()));
+  bare.deviation = border_deviations(neighbours, weight);
   bone.points += move.asDiagonal() * normals;
   update_unfolded(bone);
 }
@@ -158,6 +171,8 @@ std::vector<double> update_borders(std::vector<BareBone>& bones,
   std::vector<std::vector<BorderRay>> rays;
   for (const BareBone& bare : bones) rays.push_back(border_rays(*bare.bone, images));
   const BorderModels models = fitted_models(rays, images.size());
+  for (BareBone& bare : bones)
+    bare.deviation = VecX::Constant(bare.bone->n_vertices(), kUnknownBorder);
   for (std::size_t b = 0; b < bones.size(); ++b) update_border(bones[b], rays[b], models);
   std::vector<double> blur;
   for (std::size_t i = 0; i < images.size(); ++i) blur.push_back(models.blur_share(i));

@@ -2,6 +2,7 @@
 
 #include <coxa/mesh/tri_mesh.h>
 #include <coxa/segment/profile_search.h>
+#include <coxa/segment/uncertainty.h>
 
 #include <span>
 #include <vector>
@@ -12,6 +13,8 @@ namespace coxa::segment {
 struct BareBone {
   TriMesh* bone = nullptr;
   std::vector<const TriMesh*> layers;
+  VecX deviation = {};  ///< found, per vertex, mm: of the border as the profiles about it tell it;
+                        ///< kUnknownBorder where they tell nothing
 };
 
 /// Moves bones to the outer border of their cortex where nothing covers them, as the images'

@@ -2,8 +2,6 @@
 
 #include <coxa/core/error.h>
 #include <coxa/segment/cortex_search.h>
-#include <coxa/segment/lay_on_hosts.h>
-#include <coxa/segment/layer_extent.h>
 #include <coxa/segment/layer_search.h>
 #include <coxa/segment/muscles.h>
 #include <coxa/segment/placement.h>
@@ -15,7 +13,6 @@
 #include <set>
 #include <span>
 
-#include "bone_border.h"
 #include "landmark_reach.h"
 #include "preparation.h"
 #include "result.h"
@@ -59,9 +56,6 @@ double thinnest_slice(const std::vector<PreparedImage>& images) {
 constexpr double kDoubtfulBone = 0.65, kNarrowShare = 2.0 / 3.0;
 /// mm, of the places where dark lines lie.
 constexpr double kDrawnNoise = 1.0;
-
-/// mm, that cartilage may enter what it lies on without a word.
-constexpr double kDeepestLeft = 0.05;
 
 double mean_confidence(const std::vector<Body>& bodies) {
   double sum = 0.0;
@@ -242,48 +236,6 @@ void Hip::segment_muscles(const Monitor& monitor) {
   if (numbers.empty()) return;
   std::vector<Body> muscles = found_muscles(models, bones, images_, options_, monitor);
   for (std::size_t m = 0; m < muscles.size(); ++m) bodies_[numbers[m]] = std::move(muscles[m]);
-}
-
-std::vector<double> Hip::update_bones(std::vector<Surface>& surfaces) const {
-  std::vector<BareBone> bones;
-  for (std::size_t s = 0; s < bodies_.size(); ++s) {
-    if (!is_bone(s)) continue;
-    bones.push_back({&surfaces[s].mesh, {}});
-    for (std::size_t l = 0; l < bodies_.size(); ++l) {
-      if (hosts_[l] == s) bones.back().layers.push_back(&surfaces[l].mesh);
-    }
-  }
-  return update_borders(bones, images_);
-}
-
-std::vector<Surface> Hip::surfaces(std::vector<std::string>& warnings) const {
-  std::vector<Surface> surfaces;
-  for (const Body& body : bodies_) surfaces.push_back(surface_of(body));
-  std::vector<ExtentLayer> sided;
-  std::vector<std::string> names;
-  std::vector<LaidLayer> layers;
-  const std::vector<double> blur = update_bones(surfaces);
-  for (std::size_t s = 0; s < bodies_.size(); ++s) {
-    if (!hosts_[s]) continue;
-    TriMesh *layer = &surfaces[s].mesh, *host = &surfaces[*hosts_[s]].mesh;
-    layers.push_back({layer, host, models_[s]->n_bone_side});
-    if (models_[s]->n_bone_side == 0) continue;
-    sided.push_back({layer, host, models_[s]->n_bone_side});
-    names.push_back(models_[s]->name);
-  }
-  const std::vector<FoundExtent> found = update_extents(sided, images_, blur);
-  for (std::size_t l = 0; l < sided.size(); ++l) {
-    if (found[l].changed()) continue;
-    const std::string why = found[l].folds ? "what the image shows would fold it"
-                                           : join_text("the image tells only ",
-                                                       std::lround(100.0 * found[l].separation),
-                                                       " % of covered and bare bone apart");
-    warnings.push_back("the rims and thickness of the " + names[l] + " are the atlas's: " + why);
-  }
-  const double depth = lay_on_hosts(layers, options_.minimum_gap);
-  if (depth > kDeepestLeft)
-    warnings.push_back(join_text("cartilage enters its neighbours by up to ", depth, " mm"));
-  return surfaces;
 }
 
 bool Hip::is_asked_for(std::size_t s) const {

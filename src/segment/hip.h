@@ -41,6 +41,8 @@ class Hip {
   /// Takes the bones' surfaces to the borders that the images show where they are bare.
   /// @returns by image: standard deviation of its blur in half voxels
   std::vector<double> update_bones(std::vector<Surface>& surfaces) const;
+  /// Field uncertainty_mm of every structure with a calibration.
+  void add_uncertainties(std::vector<Surface>& surfaces) const;
   /// Layers with sides known start with the modes that fit the images best.
   void place_layers(std::vector<Body>& layers, const std::vector<TriMesh>& means,
                     const std::vector<TriMesh>& seats, Resolution resolution);

@@ -3,6 +3,7 @@
 #include <coxa/core/parallel.h>
 #include <coxa/geom/triangle_tree.h>
 #include <coxa/mesh/unfold.h>
+#include <coxa/segment/joint_gap.h>
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +34,14 @@ constexpr double kLeastRoom = 0.7, kRoomSpread = 0.4;
 constexpr double kDisputed = 3.0;
 // a layer that has no thickness here yet counts as this thick where two share the room, mm
 constexpr double kLeastShare = 0.5;
+
+// bones farther apart than this have more than two layers between them, mm
+constexpr double kWidestRoom = 8.0;
+// layers that end farther apart than this have more than a line between them, mm
+constexpr double kWidestGap = 1.2;
+// the line between two layers is told to this, mm, or not at all; not better than the second; and
+// the layers' present share of the room is as good as the third
+constexpr double kToldApart = 0.5, kLeastDeviation = 0.15, kExpected = 0.4;
 
 /// One layer with what the images say about it.
 struct Measured {
@@ -131,8 +140,45 @@ void update_claims(Measured& m, const VecX& moved, const std::vector<Opposite>& 
   });
 }
 
+/// Ways from a layer's patch to the other bone where both are covered.
+void append_ways(const Measured& m, const std::vector<Opposite>& others,
+                 std::vector<GapRay>& rays) {
+  for (Index v = 0; v < static_cast<Index>(m.coverage.score.size()); ++v) {
+    if (m.coverage.score[v] <= 0.0) continue;
+    const Vec3 p = m.patch.mesh.points.row(v), normal = m.patch.normals.row(v);
+    for (const Opposite& other : others) {
+      const auto hit = other.bone->first_hit(p, normal, kWidestRoom);
+      if (hit && interpolated(other.layer->coverage.score, other.bone->triangles(), *hit) > 0.0)
+        rays.push_back({v, p, normal, hit->distance});
+    }
+  }
+}
+
+/// Where each layer and the one across part, by patch vertex, mm; the deviation is infinite where
+/// nothing is told.
+std::vector<std::vector<GapFit>> gaps_of(const std::vector<Measured>& all,
+                                         const std::vector<std::vector<Opposite>>& opposites,
+                                         std::span<const PreparedImage> images,
+                                         std::span<const double> blur) {
+  std::vector<GapRay> rays;
+  std::vector<std::size_t> end;
+  for (std::size_t l = 0; l < all.size(); ++l) {
+    append_ways(all[l], opposites[l], rays);
+    end.push_back(rays.size());
+  }
+  const std::vector<GapFit> fits = gaps_between(rays, images, blur);
+  std::vector<std::vector<GapFit>> gaps;
+  std::size_t i = 0;
+  for (std::size_t l = 0; l < all.size(); ++l) {
+    gaps.emplace_back(static_cast<std::size_t>(all[l].coverage.score.size()));
+    for (; i < end[l]; ++i) gaps[l][static_cast<std::size_t>(rays[i].vertex)] = fits[i];
+  }
+  return gaps;
+}
+
 /// Thickness along the patch's normals: what the brightness shows, less what is the other layer's.
-VecX own_thickness(const Measured& m, const std::vector<Opposite>& others) {
+VecX own_thickness(const Measured& m, const std::vector<Opposite>& others,
+                   const std::vector<GapFit>& gaps) {
   const PresentThickness present(m);
   VecX own(m.coverage.thickness.size());
   parallel_for(static_cast<std::int64_t>(own.size()), [&](Index v) {
@@ -143,7 +189,12 @@ VecX own_thickness(const Measured& m, const std::vector<Opposite>& others) {
                           : m.coverage.thickness[v];
     for (const Opposite& other : others) {
       const auto hit = other.bone->first_hit(p, normal, kOtherBone);
-      if (!hit || own[v] < hit->distance - kTouching) continue;
+      if (!hit) continue;
+      const GapFit& gap = gaps[static_cast<std::size_t>(v)];
+      const double measured =
+          own[v] + interpolated(other.layer->coverage.thickness, other.bone->triangles(), *hit);
+      const bool parted = gap.deviation < kToldApart && hit->distance - measured < kWidestGap;
+      if (own[v] < hit->distance - kTouching && !parted) continue;
       if (interpolated(other.layer->coverage.score, other.bone->triangles(), *hit) <= 0.0) {
         own[v] = std::min(own[v], hit->distance);
         continue;
@@ -151,6 +202,10 @@ VecX own_thickness(const Measured& m, const std::vector<Opposite>& others) {
       const double mine = std::max(before, kLeastShare);
       const double theirs = std::max((*other.thickness)(p + hit->distance * normal), kLeastShare);
       own[v] = hit->distance * mine / (mine + theirs);
+      if (!parted) continue;
+      const double told = 1.0 / (gap.deviation * gap.deviation + kLeastDeviation * kLeastDeviation),
+                   expected = 1.0 / (kExpected * kExpected);
+      own[v] = (told * gap.middle + expected * own[v]) / (told + expected) - 0.5 * gap.width;
     }
   });
   return smoothed_on(m.patch, own, m.coverage.known, kThicknessPasses);
@@ -193,9 +248,10 @@ std::vector<FoundExtent> update_extents(std::vector<ExtentLayer>& layers,
     VecX& score = m.coverage.score;
     score = smoothed_on(m.patch, score, VecX::Ones(score.size()), kScorePasses);
   }
+  const auto gaps = gaps_of(all, opposites, images, blur);
   std::vector<VecX> thickness;
   for (std::size_t l = 0; l < layers.size(); ++l)
-    thickness.push_back(own_thickness(all[l], opposites[l]));
+    thickness.push_back(own_thickness(all[l], opposites[l], gaps[l]));
   for (std::size_t l = 0; l < layers.size(); ++l) {
     if (!all[l].usable()) continue;
     TriMesh layer = *layers[l].layer;

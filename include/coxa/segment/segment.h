@@ -3,6 +3,7 @@
 #include <coxa/core/monitor.h>
 #include <coxa/image/volume.h>
 #include <coxa/mesh/surface_set.h>
+#include <coxa/segment/uncertainty.h>
 #include <coxa/shape/atlas.h>
 
 #include <functional>
@@ -41,6 +42,8 @@ struct SegmentOptions {
   std::optional<std::string> contrast =
       {};                        ///< the atlas' profiles to use; none: the best fitting of them
   double minimum_quality = 0.4;  ///< in [0, 1]: below it the result is refused with below_quality
+  /// By structure: how wide its 95 % intervals are. A structure without one gets no uncertainty_mm.
+  std::map<std::string, Calibration> calibrations = {};
   /// Called now and then with the surfaces as far as they are found; changes nothing.
   std::function<void(const SurfaceSet&)> on_found = {};
 };
@@ -56,7 +59,9 @@ struct StructureQuality {
 
 struct SegmentResult {
   /// Closed surfaces, LPS mm, with fields `confidence` ([0, 1]) and `completed` (1 outside the
-  /// view: the shape model's opinion, 0 seen in the image).
+  /// view: the shape model's opinion, 0 seen in the image); where the options have a calibration
+  /// `uncertainty_mm` (half width of the 95 % interval of the distance from the true surface).
+  /// Bones have `border_deviation_mm` (BareBone).
   SurfaceSet surfaces;
   std::map<std::string, StructureQuality> structures;
   std::map<std::string, double>

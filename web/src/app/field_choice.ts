@@ -10,6 +10,7 @@ type RangeMode = "fixed" | "frame" | "own";
 /** Fields of the segmentation's surfaces, beside those of the simulation. */
 const kSurfaceFields = [
   { key: "confidence", label: "confidence of the segmentation", unit: "" },
+  { key: "uncertainty_mm", label: "95 % interval of the surface, ±", unit: "mm" },
   { key: "cartilage_thickness_mm", label: "cartilage thickness over the bone", unit: "mm" },
 ];
 

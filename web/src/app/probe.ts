@@ -51,7 +51,7 @@ export class Probe {
       const hour = hourOf(this.info.clock, place);
       rows.push(["clock", `${(hour < 1 ? hour + 12 : hour).toFixed(1)} h`]);
     }
-    const fields = [...this.info.fields, { key: "confidence", label: "confidence", unit: "" }, { key: "cartilage_thickness_mm", label: "cartilage thickness", unit: "mm" }];
+    const fields = [...this.info.fields, { key: "confidence", label: "confidence", unit: "" }, { key: "uncertainty_mm", label: "surface ±", unit: "mm" }, { key: "cartilage_thickness_mm", label: "cartilage thickness", unit: "mm" }];
     for (const { key, label, unit } of fields) {
       const values = this.hip.values(layer.name, key);
       if (values) rows.push([label, `${shortNumber(mix((c) => values[c] ?? NaN))} ${unit}`]);
