@@ -146,9 +146,11 @@ bool update_fine_places(const std::vector<Miss>& missed, const Octree& octree,
 // ridges along which the mesh should run, where it misses the surface without that
 FeatureCurves ridges_missed(const TriMesh& surface, const MeshingResult& made,
                             const MeshingOptions& options, const OctreeOptions& cubes) {
-  constexpr double kMissed = 0.15;   // mm, of the surface, where finer cubes are not allowed
+  // mm, of the surface: asked for, and where the number of elements is given and cubes cannot get
+  // finer
+  constexpr double kLimit = 0.3, kGivenNumber = 0.15;
   constexpr double kShortest = 3.0;  // of the smallest cubes
-  const bool met = made.report.envelope <= (options.max_tets ? kMissed : kMuchMissed);
+  const bool met = made.report.envelope <= (options.max_tets ? kGivenNumber : kLimit);
   return met ? FeatureCurves{} : feature_curves(surface, kShortest * cubes.smallest);
 }
 
