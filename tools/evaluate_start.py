@@ -3,6 +3,7 @@
 
 usage: evaluate_start.py [--coxa build/release/coxa] [--work DIR] [--count 10] [--first 101] [--voxel 1.5] [--threads 1]
 
+Printed are mean distances of corresponding vertices, everywhere, and, in brackets, of the surfaces from each other where the image shows them.
 Patients are drawn by coxa phantom with the seeds first, first + 1, …, sides in turn, off the model by its default; a result without
 landmarks is the same as the other where the vertices of femur and hip bone lie at most 0.1 mm apart on average.  One that is not
 is flagged where it is refused or its record says "low confidence".
@@ -60,12 +61,18 @@ def main():
             continue
         points = lambda name, bone: surfaces.arrays(surfaces.read(str(folder / name / f"{bone}.ply")))[0]
         apart = {b: np.linalg.norm(points("with", b) - points("without", b), axis=1).mean() for b in ("femur", "hip_bone")}
+        surface = {}
+        for bone in apart:
+            judged = subprocess.run(["/usr/bin/python3", surfaces.__file__, str(folder / "with" / f"{bone}.ply"),
+                                     str(folder / "without" / f"{bone}.ply"), "--image", str(folder / "image.nii.gz"), "--json"],
+                                    capture_output=True, text=True, check=True)
+            surface[bone] = json.loads(judged.stdout)["assd"]
         same = max(apart.values()) <= SAME
         low = any("low confidence" in w for w in none["warnings"])
         n_same += same
         n_flagged += not same and low
-        print(f"{seed} {side}: femur {apart['femur']:.3f} mm apart, hip bone {apart['hip_bone']:.3f} mm; quality "
-              f"{given['figures']['quality']:.2f}, {none['figures']['quality']:.2f}{'; low confidence' if low else ''}", flush=True)
+        print(f"{seed} {side}: femur {apart['femur']:.3f} ({surface['femur']:.3f}) mm apart, hip bone {apart['hip_bone']:.3f} "
+              f"({surface['hip_bone']:.3f}) mm; quality {given['figures']['quality']:.2f}, {none['figures']['quality']:.2f}{'; low confidence' if low else ''}", flush=True)
     print(f"{n_same} of {n} the same, {n_flagged} flagged, {n - n_same - n_flagged} neither")
 
 
