@@ -2,6 +2,7 @@
 
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
+#include <coxa/mesh/remesh.h>
 #include <gtest/gtest.h>
 #include "support/shapes.h"
 
@@ -70,6 +71,17 @@ TEST(SurfaceSides, GiveTheThicknessAlongTheInwardNormal) {
 TEST(SurfaceSides, OfASphereAreNoSheet) {
   // rays meet the far side head on, but the two halves cannot disagree everywhere
   EXPECT_LT(split_sides(test::torus()).sheetness, 1.0);
+}
+
+TEST(SurfaceSides, OfAThickBodyOfManyTrianglesAreToldFromACoarserSurface) {
+  // a long bar, twice as wide as thick
+  TriMesh bar = test::icosphere(5, 10.0);
+  bar.points.col(0) *= 6.0;
+  bar.points.col(1) *= 2.0;
+  ASSERT_GT(bar.n_triangles(), 10000);
+  ASSERT_GT(facing_bound(bar).relative_thickness, 0.15);
+  const TriMesh coarse = decimate(bar, {.n_triangles = 5000});
+  EXPECT_NEAR(split_sides(bar).sheetness, split_sides(coarse).sheetness, 0.02);
 }
 
 TEST(SurfaceSides, AreBitIdenticalForOneAndEightThreads) {
