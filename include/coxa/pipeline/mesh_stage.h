@@ -17,8 +17,8 @@ struct MeshRequest {
   meshing::MeshingOptions options;
 };
 
-/// Reads, checks, repairs where that is safe, fills with tetrahedra, writes; what was changed of the
-/// surface is to be seen in `<stem>_repaired.ply` beside the mesh.
+/// Reads, checks, repairs where that is safe, fills with tetrahedra, writes; what was changed of
+/// the surface is to be seen in `<stem>_repaired.ply` beside the mesh.
 /// @throws Error bad_mesh naming the place if the surface cannot be used
 Record run_mesh_file(const MeshRequest& request, const std::filesystem::path& out,
                      const Monitor& monitor);
