@@ -22,6 +22,23 @@
 namespace coxa::segment {
 namespace {
 
+/// So many landmarks are in the image at least; others may have been set in another of the patient.
+constexpr int kLeastInImage = 3;
+
+void check_in_image(const std::vector<PreparedImage>& images, const shape::Landmarks& landmarks) {
+  int inside = 0;
+  for (const auto& [name, p] : landmarks) {
+    for (const PreparedImage& image : images) {
+      if (!in_view(image.volume, p)) continue;
+      ++inside;
+      break;
+    }
+  }
+  require(landmarks.empty() || inside >= kLeastInImage, "only ", inside, " of ", landmarks.size(),
+          " known landmarks lie in the image, and ", kLeastInImage,
+          " is the least; they belong to another image, or to another frame than LPS");
+}
+
 Body placed_body(const shape::StructureModel& model, Points placed) {
   Body body;
   body.model = &model;
@@ -142,6 +159,7 @@ void Hip::segment_bones(const shape::Landmarks& landmarks, const Monitor& monito
   const std::vector<Points> placed =
       landmarks.empty() ? find_pose(models, images_, options_, monitor).placed
                         : place_by_landmarks(models, landmarks, atlas_, options_.landmark_error);
+  check_in_image(images_, landmarks);
   for (std::size_t b = 0; b < models.size(); ++b) {
     bones.push_back(placed_body(*models[b], placed[b]));
     bones.back().prepared = &preparations_[numbers[b]];

@@ -40,22 +40,6 @@ constexpr double kDoubtfulQuality = 0.5;
 
 /// ml. Bones with so much inside that gives no signal were never met without metal in them.
 constexpr double kLargestVoid = 0.3;
-/// So many landmarks are in the image at least; others may have been set in another of the patient.
-constexpr int kLeastInImage = 3;
-
-void check_in_image(const std::vector<PreparedImage>& images, const shape::Landmarks& landmarks) {
-  int inside = 0;
-  for (const auto& [name, p] : landmarks) {
-    for (const PreparedImage& image : images) {
-      if (!in_view(image.volume, p)) continue;
-      ++inside;
-      break;
-    }
-  }
-  require(landmarks.empty() || inside >= kLeastInImage, "only ", inside, " of ", landmarks.size(),
-          " known landmarks lie in the image, and ", kLeastInImage,
-          " is the least; they belong to another image, or to another frame than LPS");
-}
 
 void warn_of_metal(const Hip& hip, const std::vector<Surface>& surfaces,
                    std::vector<std::string>& warnings) {
@@ -167,7 +151,6 @@ SegmentResult segment(const std::vector<Volume>& volumes, const shape::Atlas& at
   }
   shape::Landmarks ours = landmarks_of_side(landmarks, atlas, side);
   if (side == Side::left) ours = mirrored(ours);
-  check_in_image(images, ours);
   Hip hip(std::move(images), atlas, options);
   const double bones_and_layers = hip.has_muscles() ? 0.5 : 1.0;
   hip.segment_bones(ours, part_of(monitor, "segment bones", 0.0, 0.7 * bones_and_layers));

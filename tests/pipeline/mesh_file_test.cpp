@@ -13,7 +13,10 @@ namespace fs = std::filesystem;
 
 class MeshFile : public testing::Test {
  protected:
-  MeshFile() : folder_(fs::path(testing::TempDir()) / "mesh_file") {
+  MeshFile()
+      : folder_(fs::path(testing::TempDir()) /
+                (std::string("mesh_file_") +
+                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }
