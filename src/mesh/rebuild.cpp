@@ -7,6 +7,7 @@
 #include <coxa/geom/triangle_tree.h>
 #include <coxa/mesh/iso_surface.h>
 #include <coxa/mesh/measures.h>
+#include <coxa/mesh/sample_grid.h>
 #include <coxa/mesh/topology.h>
 #include <coxa/mesh/voxelize.h>
 
@@ -22,32 +23,22 @@ constexpr double kBand = 2.0;  // grid spacings around the surface where distanc
 constexpr double kLeast = 0.05;
 constexpr std::int64_t kMaxSamples = 200'000'000;
 
-struct Grid {
-  std::array<Index, 3> size{};
-  Vec3 origin = Vec3::Zero();
-  double spacing = 1.0;
-
-  Grid(const Points& points, double h) : spacing(h) {
-    const Bounds box = bounds(points);
-    const Vec3 cells = ((box.high - box.low) / h).array() + 2.0 * (kBand + 2.0);
-    require(cells.prod() < static_cast<double>(kMaxSamples), "rebuild: a spacing of ", h,
-            " mm gives too many samples");
-    // half a cell off the corner: rows then rarely run along flat faces
-    origin = box.low.array() - (kBand + 1.5) * h;
-    for (int k = 0; k < 3; ++k)
-      size[static_cast<std::size_t>(k)] = static_cast<Index>(std::ceil(cells[k]));
-  }
-  std::size_t offset(Index i, Index j, Index k) const {
-    return static_cast<std::size_t>(i) +
-           static_cast<std::size_t>(size[0]) *
-               (static_cast<std::size_t>(j) +
-                static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(k));
-  }
-  std::size_t n() const { return offset(0, 0, size[2]); }
-};
+SampleGrid grid_around(const Points& points, double h) {
+  const Bounds box = bounds(points);
+  const Vec3 cells = ((box.high - box.low) / h).array() + 2.0 * (kBand + 2.0);
+  require(cells.prod() < static_cast<double>(kMaxSamples), "rebuild: a spacing of ", h,
+          " mm gives too many samples");
+  SampleGrid grid;
+  grid.spacing = h;
+  // half a cell off the corner: rows then rarely run along flat faces
+  grid.origin = box.low.array() - (kBand + 1.5) * h;
+  for (int k = 0; k < 3; ++k)
+    grid.size[static_cast<std::size_t>(k)] = static_cast<Index>(std::ceil(cells[k]));
+  return grid;
+}
 
 // how many of the six axis directions see each sample inside
-std::vector<std::uint8_t> votes(const TriMesh& mesh, const Grid& grid) {
+std::vector<std::uint8_t> votes(const TriMesh& mesh, const SampleGrid& grid) {
   std::vector<std::uint8_t> sum(grid.n(), 0);
   for (int axis = 0; axis < 3; ++axis)
     for (bool reversed : {false, true}) {
@@ -55,7 +46,7 @@ std::vector<std::uint8_t> votes(const TriMesh& mesh, const Grid& grid) {
       const int a = axis, b = (axis + 1) % 3, c = (axis + 2) % 3;
       const auto at = [&](int k) { return grid.size[static_cast<std::size_t>(k)]; };
       const auto index = [&](const Vec3& p) {
-        const Vec3 q = (p - grid.origin) / grid.spacing;
+        const Vec3 q = grid.index(p);
         return Vec3(reversed ? at(a) - 1 - q[a] : q[a], q[b], q[c]);
       };
       const auto inside = inside_samples(mesh, {at(a), at(b), at(c)}, index);
@@ -77,27 +68,23 @@ std::vector<std::uint8_t> votes(const TriMesh& mesh, const Grid& grid) {
 }
 
 // distance from the surface, positive inside, cut off at the band plus reach
-std::vector<float> inner_distance(const TriMesh& mesh, const Grid& grid, double reach = 0.0) {
+std::vector<float> inner_distance(const TriMesh& mesh, const SampleGrid& grid, double reach = 0.0) {
   const std::vector<std::uint8_t> inside = votes(mesh, grid);
   const TriangleTree tree(mesh.points, mesh.triangles);
   const double band = kBand * grid.spacing + reach;
   std::vector<float> values(grid.n());
-  parallel_for(grid.size[2], [&](Index k) {
-    for (Index j = 0; j < grid.size[1]; ++j)
-      for (Index i = 0; i < grid.size[0]; ++i) {
-        const auto near = tree.nearest_within(grid.origin + grid.spacing * Vec3(i, j, k), band);
-        const double distance =
-            near ? std::max(kLeast * grid.spacing, std::sqrt(near->squared_distance)) : band;
-        const std::size_t place = grid.offset(i, j, k);
-        values[place] = static_cast<float>(inside[place] > 3 ? distance : -distance);
-      }
+  grid.for_samples([&](std::size_t place, const Vec3& p) {
+    const auto near = tree.nearest_within(p, band);
+    const double distance =
+        near ? std::max(kLeast * grid.spacing, std::sqrt(near->squared_distance)) : band;
+    values[place] = static_cast<float>(inside[place] > 3 ? distance : -distance);
   });
   return values;
 }
 
 /// Gaussian of the given standard deviation (samples) along one axis; values beyond the grid as at
 /// its border.
-std::vector<float> blurred(const std::vector<float>& values, const Grid& grid, int axis,
+std::vector<float> blurred(const std::vector<float>& values, const SampleGrid& grid, int axis,
                            double deviation) {
   const Index reach = static_cast<Index>(std::ceil(3.0 * deviation));
   std::vector<double> weight(static_cast<std::size_t>(2 * reach + 1));
@@ -136,10 +123,10 @@ TriMesh without_crumbs(const TriMesh& mesh) {
 
 /// Distances from what remains when the surface is moved inwards and outwards again by `radius`
 /// (morphological opening).
-std::vector<float> opened(const std::vector<float>& values, const Grid& grid, double radius) {
+std::vector<float> opened(const std::vector<float>& values, const SampleGrid& grid, double radius) {
   if (std::none_of(values.begin(), values.end(), [&](float v) { return double{v} > radius; }))
     fail(ErrorCode::bad_mesh, "nothing of the surface is thicker than ", 2.0 * radius, " mm");
-  const auto position = [&](const Vec3& index) { return Vec3(grid.origin + grid.spacing * index); };
+  const auto position = [&](const Vec3& index) { return grid.position(index); };
   const TriMesh core = without_crumbs(iso_surface(grid.size, values, radius, position));
   std::vector<float> distance = inner_distance(core, grid, radius);
   for (float& value : distance) value += static_cast<float>(radius);
@@ -160,7 +147,7 @@ void append_pieces(const std::array<Vec3, 3>& corners, double edge, std::vector<
 }
 
 /// Loose pieces of the old surface that lie outside of what the distances enclose.
-TriMesh lost_pieces(const TriMesh& mesh, const std::vector<float>& values, const Grid& grid) {
+TriMesh lost_pieces(const TriMesh& mesh, const std::vector<float>& values, const SampleGrid& grid) {
   constexpr double kPiece = 2.0, kLost = 0.5;  // grid spacings
   std::vector<Vec3> pieces;
   for (Index t = 0; t < mesh.n_triangles(); ++t)
@@ -193,7 +180,7 @@ TriMesh lost_pieces(const TriMesh& mesh, const std::vector<float>& values, const
 }
 
 /// Joins walls around loose triangles, `half` mm to both sides, with what the distances enclose.
-void update_with_walls(const TriMesh& loose, double half, const Grid& grid,
+void update_with_walls(const TriMesh& loose, double half, const SampleGrid& grid,
                        std::vector<float>& values) {
   const TriangleTree tree(loose.points, loose.triangles);
   const double band = half + kBand * grid.spacing;
@@ -256,7 +243,7 @@ Rebuilt rebuild(const TriMesh& mesh, const RebuildOptions& options) {
   require(options.max_loss >= 0.0, "rebuild: max_loss must not be negative, got ", options.max_loss,
           " mm");
   const TriangleTree old_surface(mesh.points, mesh.triangles);  // refuses what cannot be read
-  const Grid grid(mesh.points, options.spacing);
+  const SampleGrid grid = grid_around(mesh.points, options.spacing);
   std::vector<float> values = inner_distance(mesh, grid, options.opening);
   if (options.opening > 0.0) values = opened(values, grid, options.opening);
   for (int axis = 0; axis < 3 && options.smoothing > 0.0; ++axis)
@@ -270,7 +257,7 @@ Rebuilt rebuild(const TriMesh& mesh, const RebuildOptions& options) {
   if (std::none_of(values.begin(), values.end(), [](float v) { return v > 0.0f; }))
     fail(ErrorCode::bad_mesh, "the surface encloses nothing that a grid of ", options.spacing,
          " mm could see");
-  const auto position = [&](const Vec3& index) { return Vec3(grid.origin + grid.spacing * index); };
+  const auto position = [&](const Vec3& index) { return grid.position(index); };
   const TriMesh raw = without_crumbs(iso_surface(grid.size, values, 0.0, position));
 
   if (options.max_loss < kInfinity) largest_loss(mesh, raw, options.max_loss);  // in good time

@@ -164,14 +164,8 @@ void draw_to_features(TetGrid& grid, const FeatureCurves& features,
   for (const FeatureNode& f : chosen) {
     const Index v = f.node;
     if (grid.kinds[at(v)] != NodeKind::first_corner || grid.around[at(v)].empty()) continue;
-    const Vec3 old = grid.x[at(v)], target = target_of(grid, features, f);
-    const double allowed = std::max(kWorst, worst_energy(grid, v));
-    for (const double share : {1.0, 0.8, 0.6, 0.4, 0.2, 0.0}) {
-      grid.x[at(v)] = old + share * (target - old);
-      if (worst_energy(grid, v) > allowed) continue;
-      if (share == 1.0 && f.curve >= 0) grid.kinds[at(v)] = NodeKind::first_crease;
-      break;
-    }
+    const double share = draw_node(grid, v, target_of(grid, features, f), kWorst);
+    if (share == 1.0 && f.curve >= 0) grid.kinds[at(v)] = NodeKind::first_crease;
     grid.reach[at(v)] = 0.0;
   }
 }

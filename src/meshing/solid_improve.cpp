@@ -21,12 +21,8 @@ void draw_to_surface(TetGrid& grid, const SolidGuide& guide) {
   for (std::size_t v = 0; v < grid.x.size(); ++v) {
     if (grid.kinds[v] == NodeKind::inside || grid.around[v].empty()) continue;
     const Vec3 old = grid.x[v], home = guide.place(grid.kinds[v], old);
-    const double allowed = std::max(kWorst, worst_energy(grid, static_cast<Index>(v)));
-    for (const double share : {1.0, 0.8, 0.6, 0.4, 0.2, 0.0}) {
-      grid.x[v] = old + share * (home - old);
-      grid.reach[v] = share < 1.0 ? (1.0 - share) * (home - old).norm() : 0.0;
-      if (worst_energy(grid, static_cast<Index>(v)) <= allowed) break;
-    }
+    const double share = draw_node(grid, static_cast<Index>(v), home, kWorst);
+    grid.reach[v] = share < 1.0 ? (1.0 - share) * (home - old).norm() : 0.0;
   }
 }
 

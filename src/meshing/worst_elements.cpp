@@ -27,6 +27,17 @@ double worst_energy(const TetGrid& grid, Index v) {
   return worst;
 }
 
+double draw_node(TetGrid& grid, Index v, const Vec3& place, double worst) {
+  const Vec3 old = grid.x[at(v)];
+  const double allowed = std::max(worst, worst_energy(grid, v));
+  for (const double share : {1.0, 0.8, 0.6, 0.4, 0.2}) {
+    grid.x[at(v)] = old + share * (place - old);
+    if (worst_energy(grid, v) <= allowed) return share;
+  }
+  grid.x[at(v)] = old;
+  return 0.0;
+}
+
 double element_rank(const TetGrid& grid, const Tet& t) {
   const Vec3 &a = grid.x[at(t[0])], &b = grid.x[at(t[1])], &c = grid.x[at(t[2])],
              &d = grid.x[at(t[3])];

@@ -12,6 +12,10 @@ double element_rank(const TetGrid& grid, const Tet& tet);
 /// Greatest shape energy of the elements around a node.
 double worst_energy(const TetGrid& grid, Index v);
 
+/// Moves a node towards a place, in steps of a fifth of the way, as far as the elements around get
+/// no worse than `worst` (shape energy) or than they are. @returns the share of the way
+double draw_node(TetGrid& grid, Index v, const Vec3& place, double worst);
+
 /// Raises the worst elements: moves the nodes of elements below the limits, by trial steps along
 /// the directions they may slide in, wherever that raises the worst element around the node.
 ///

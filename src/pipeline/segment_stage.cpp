@@ -1,6 +1,7 @@
 #include <coxa/pipeline/segment_stage.h>
 
 #include <coxa/core/error.h>
+#include <coxa/geom/median.h>
 #include <coxa/io/atlas_file.h>
 #include <coxa/io/dicom.h>
 #include <coxa/io/files.h>
@@ -114,10 +115,8 @@ double median_in_view(const Surface& surface, const std::string& field) {
   for (Eigen::Index v = 0; v < values.size(); ++v) {
     if (completed[v] == 0.0) seen.push_back(values[v]);
   }
-  if (seen.empty()) seen.assign(values.begin(), values.end());
-  const auto middle = seen.begin() + static_cast<std::ptrdiff_t>(seen.size() / 2);
-  std::nth_element(seen.begin(), middle, seen.end());
-  return *middle;
+  if (seen.empty()) return median(values);
+  return median(seen);
 }
 
 void add_figures(const segment::SegmentResult& result, Record& record) {

@@ -26,14 +26,11 @@ namespace {
 constexpr int kLeastInImage = 3;
 
 void check_in_image(const std::vector<PreparedImage>& images, const shape::Landmarks& landmarks) {
-  int inside = 0;
-  for (const auto& [name, p] : landmarks) {
-    for (const PreparedImage& image : images) {
-      if (!in_view(image.volume, p)) continue;
-      ++inside;
-      break;
-    }
-  }
+  const auto inside = std::count_if(landmarks.begin(), landmarks.end(), [&](const auto& landmark) {
+    return std::any_of(images.begin(), images.end(), [&](const PreparedImage& image) {
+      return in_view(image.volume, landmark.second);
+    });
+  });
   require(landmarks.empty() || inside >= kLeastInImage, "only ", inside, " of ", landmarks.size(),
           " known landmarks lie in the image, and ", kLeastInImage,
           " is the least; they belong to another image, or to another frame than LPS");

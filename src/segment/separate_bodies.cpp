@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interpolated.h"
+
 namespace coxa::segment {
 namespace {
 
@@ -47,12 +49,8 @@ std::map<std::string, VecX> carried_fields(const Surface& from, const TriMesh& t
   std::map<std::string, VecX> fields;
   for (const auto& [name, values] : from.fields) {
     VecX carried(n);
-    for (Index v = 0; v < n; ++v) {
-      const NearestPoint& at = places[static_cast<std::size_t>(v)];
-      carried[v] = 0.0;
-      for (int k = 0; k < 3; ++k)
-        carried[v] += at.barycentric[k] * values[from.mesh.triangles(at.triangle, k)];
-    }
+    for (Index v = 0; v < n; ++v)
+      carried[v] = interpolated(values, from.mesh.triangles, places[static_cast<std::size_t>(v)]);
     fields[name] = name == "completed" ? VecX((carried.array() > 0.5).cast<double>()) : carried;
   }
   return fields;

@@ -1,5 +1,6 @@
 #include "signal_void.h"
 
+#include <coxa/geom/median.h>
 #include <coxa/mesh/voxelize.h>
 
 #include <algorithm>
@@ -43,14 +44,11 @@ Volume values_inside(const TriMesh& bone, const Volume& image) {
 }
 
 double median_of(const std::vector<Volume>& grids) {
-  std::vector<float> values;
+  std::vector<double> values;
   for (const Volume& grid : grids)
     std::copy_if(grid.values.begin(), grid.values.end(), std::back_inserter(values),
                  [](float v) { return !std::isnan(v); });
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? 0.0 : median(values);
 }
 
 /// Whether all about a place of the grid is inside and dark.

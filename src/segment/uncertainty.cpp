@@ -34,7 +34,6 @@ double depth_in(const Volume& volume, const Vec3& p) {
 
 void add_layer(const TriMesh& surface, Index n_bone_side, Evidence& evidence) {
   const LayerSheet layer = sheet_of(surface, n_bone_side);
-  Points rim(0, 3);
   evidence.far_side = VecX::Ones(surface.n_vertices());
   evidence.far_side.head(layer.sheet.n_vertices()).setZero();
   std::vector<Index> rim_vertices;

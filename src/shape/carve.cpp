@@ -1,11 +1,11 @@
 #include <coxa/shape/carve.h>
 
 #include <coxa/core/error.h>
-#include <coxa/core/parallel.h>
 #include <coxa/geom/triangle_tree.h>
 #include <coxa/mesh/iso_surface.h>
 #include <coxa/mesh/measures.h>
 #include <coxa/mesh/rebuild.h>
+#include <coxa/mesh/sample_grid.h>
 #include <coxa/mesh/topology.h>
 #include <coxa/mesh/voxelize.h>
 
@@ -19,63 +19,49 @@ namespace {
 // grid spacings: farther from a surface only the side counts
 constexpr double kBand = 4.0;
 
-struct Grid {
-  std::array<Index, 3> size{};
-  Vec3 origin = Vec3::Zero();
-  double spacing = 1.0;
+SampleGrid grid_around(const TriMesh& mesh, double h) {
+  const Bounds box = bounds(mesh.points);
+  SampleGrid grid;
+  grid.spacing = h;
+  // a third of a cell off the corner: samples then rarely lie on flat faces
+  grid.origin = box.low.array() - 1.33 * h;
+  for (int k = 0; k < 3; ++k)
+    grid.size[static_cast<std::size_t>(k)] =
+        static_cast<Index>(std::ceil((box.high[k] - grid.origin[k]) / h)) + 2;
+  return grid;
+}
 
-  Grid(const TriMesh& mesh, double h) : spacing(h) {
-    const Bounds box = bounds(mesh.points);
-    // a third of a cell off the corner: samples then rarely lie on flat faces
-    origin = box.low.array() - 1.33 * h;
-    for (int k = 0; k < 3; ++k)
-      size[static_cast<std::size_t>(k)] =
-          static_cast<Index>(std::ceil((box.high[k] - origin[k]) / h)) + 2;
-  }
-  Vec3 at(Index i, Index j, Index k) const { return origin + spacing * Vec3(i, j, k); }
-  std::size_t offset(Index i, Index j, Index k) const {
-    return static_cast<std::size_t>(i) +
-           static_cast<std::size_t>(size[0]) *
-               (static_cast<std::size_t>(j) +
-                static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(k));
-  }
-  template <class Body>
-  void for_samples(const Body& body) const {
-    parallel_for(size[2], [&](Index k) {
-      for (Index j = 0; j < size[1]; ++j)
-        for (Index i = 0; i < size[0]; ++i) body(offset(i, j, k), at(i, j, k));
-    });
-  }
-};
+std::vector<std::uint8_t> inside(const TriMesh& mesh, const SampleGrid& grid) {
+  return inside_samples(mesh, grid.size, [&](const Vec3& p) { return grid.index(p); });
+}
 
 /// Distance into the surface, negative outside, no more than the band to either side.
-std::vector<float> depths(const TriMesh& mesh, const Grid& grid) {
-  const auto inside = inside_samples(
-      mesh, grid.size, [&](const Vec3& p) { return Vec3((p - grid.origin) / grid.spacing); });
+std::vector<float> depths(const TriMesh& mesh, const SampleGrid& grid) {
+  const auto within = inside(mesh, grid);
   const TriangleTree tree(mesh.points, mesh.triangles);
   const double band = kBand * grid.spacing;
-  std::vector<float> values(inside.size());
+  std::vector<float> values(within.size());
   grid.for_samples([&](std::size_t n, const Vec3& p) {
     const auto near = tree.nearest_within(p, band);
     const double distance = near ? std::sqrt(near->squared_distance) : band;
-    values[n] = static_cast<float>(inside[n] != 0 ? distance : -distance);
+    values[n] = static_cast<float>(within[n] != 0 ? distance : -distance);
   });
   return values;
 }
 
 /// Lowers the depths to the distance from the obstacle less the gap. @returns whether any was
-bool lower(const TriMesh& obstacle, double gap, const Grid& grid, std::vector<float>& values) {
+bool lower(const TriMesh& obstacle, double gap, const SampleGrid& grid,
+           std::vector<float>& values) {
   const TriangleTree tree(obstacle.points, obstacle.triangles);
-  const auto inside = inside_samples(
-      obstacle, grid.size, [&](const Vec3& p) { return Vec3((p - grid.origin) / grid.spacing); });
+  const auto within = inside(obstacle, grid);
   const double band = kBand * grid.spacing;
   std::vector<char> lowered(values.size(), 0);
   grid.for_samples([&](std::size_t n, const Vec3& p) {
     if (values[n] < -0.99 * band) return;
     const auto near = tree.nearest_within(p, band);
-    if (!near && inside[n] == 0) return;
+    if (!near && within[n] == 0) return;
     const double distance = near ? std::sqrt(near->squared_distance) : band;
-    const auto room = static_cast<float>((inside[n] != 0 ? -distance : distance) - gap);
+    const auto room = static_cast<float>((within[n] != 0 ? -distance : distance) - gap);
     if (room >= values[n]) return;
     lowered[n] = values[n] > 0.0F;
     values[n] = room;
@@ -129,7 +115,7 @@ TriMesh carved(const TriMesh& mesh, const std::vector<const TriMesh*>& obstacles
           "least_kept must be in (0, 1], got ", options.least_kept);
   require(options.least_whole >= 0.0 && options.least_whole <= 1.0,
           "least_whole must be in [0, 1], got ", options.least_whole);
-  const Grid grid(mesh, options.spacing);
+  const SampleGrid grid = grid_around(mesh, options.spacing);
   std::vector<float> values = depths(mesh, grid);
   bool any = false;
   for (const TriMesh* obstacle : obstacles)
@@ -137,8 +123,8 @@ TriMesh carved(const TriMesh& mesh, const std::vector<const TriMesh*>& obstacles
   if (!any) return mesh;
   const bool left = std::any_of(values.begin(), values.end(), [](float v) { return v > 0.0F; });
   if (!left) fail(ErrorCode::below_quality, "nothing of it lies out of everything else");
-  const TriMesh raw = iso_surface(
-      grid.size, values, 0.0, [&](const Vec3& i) { return Vec3(grid.origin + grid.spacing * i); });
+  const TriMesh raw =
+      iso_surface(grid.size, values, 0.0, [&](const Vec3& index) { return grid.position(index); });
   const double kept = volume(raw) / volume(mesh);
   Piece piece;
   if (kept >= options.least_kept) piece = even_piece(raw, options);

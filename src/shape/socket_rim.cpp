@@ -47,7 +47,7 @@ double hour_of(int i) { return 12.0 * i / kHours; }
 double median_of_known(std::vector<double> values) {
   std::erase_if(values, [](double v) { return v != v; });
   if (values.empty()) return kNaN;
-  return median(Eigen::Map<const VecX>(values.data(), static_cast<Index>(values.size())));
+  return median(values);
 }
 
 /// Heights at which a ray from the centre is asked how far the surface is, and the answers (NaN:

@@ -3,6 +3,7 @@
 #include <coxa/core/types.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace coxa {
 
@@ -11,6 +12,9 @@ inline double median(VecX values) {
   double* const middle = values.data() + values.size() / 2;
   std::nth_element(values.data(), middle, values.data() + values.size());
   return *middle;
+}
+inline double median(const std::vector<double>& values) {
+  return median(VecX(Eigen::Map<const VecX>(values.data(), static_cast<Index>(values.size()))));
 }
 
 }  // namespace coxa
