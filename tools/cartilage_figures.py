@@ -25,7 +25,7 @@ def n_bone_side(path, n_faces):
     return n_faces // 2
 
 
-def open_surface(points, faces):
+def surface_of(points, faces):
     surface = vtk.vtkPolyData()
     vertices = vtk.vtkPoints()
     vertices.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
@@ -43,7 +43,7 @@ def sides(path, evaluator):
     reader.Update()
     points, faces = evaluator.arrays(reader.GetOutput())
     n = n_bone_side(path, len(faces))
-    return open_surface(points, faces[:n]), open_surface(points, faces[n:])
+    return surface_of(points, faces[:n]), surface_of(points, faces[n:])
 
 
 def distance(a, b, evaluator):

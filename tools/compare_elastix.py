@@ -9,13 +9,9 @@ affine, then B-splines with a final grid of 10 mm, mutual information (contrasts
 image of the same contrast that fits best after registration (its metric); the *several* are the mean of the signed distances of all.  Every hip bone of these
 images is one person's, warped, and all atlases here have it: elastix' hip-bone figures are flattered, coxa's atlas has none of them.
 """
-import argparse
-import json
 import os
-import pathlib
 import re
 import resource
-import subprocess
 import sys
 import time
 
@@ -23,10 +19,11 @@ import nibabel
 import numpy as np
 import vtk
 from scipy import ndimage
-from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtk.util.numpy_support import numpy_to_vtk
 
 import cartilage_figures
 import evaluate_segmentation as ours
+import evaluation
 
 MASK_REACH = 15.0  # mm about the bones: the joint and what borders on it
 FUSION_STEP = 0.6  # mm, grid of the signed distances
@@ -71,18 +68,6 @@ def mirrored_image(source, target):
     nibabel.save(out, target)
 
 
-def surface(points, triangles):
-    data = vtk.vtkPolyData()
-    vertices = vtk.vtkPoints()
-    vertices.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
-    cells = vtk.vtkCellArray()
-    packed = np.c_[np.full(len(triangles), 3), triangles].astype(np.int64).ravel()
-    cells.SetCells(len(triangles), numpy_to_vtkIdTypeArray(packed, deep=True))
-    data.SetPoints(vertices)
-    data.SetPolys(cells)
-    return data
-
-
 def write(data, path):
     writer = vtk.vtkPLYWriter()
     writer.SetFileName(str(path))
@@ -125,7 +110,7 @@ def carried(points, transform, folder):
     """Points of the atlas image where the registration puts them."""
     listed = folder / "points.txt"
     np.savetxt(listed, points, fmt="%.6f", header=f"point\n{len(points)}", comments="")
-    ours.run(["transformix", "-def", listed, "-tp", transform, "-out", folder])
+    evaluation.run(["transformix", "-def", listed, "-tp", transform, "-out", folder])
     lines = (folder / "outputpoints.txt").read_text().splitlines()
     return np.array([re.search(r"OutputPoint = \[ (.*?) \]", line).group(1).split() for line in lines], float)
 
@@ -149,7 +134,7 @@ def register(name, other, patient_marks, options, evaluator):
     marks = {k: p * mirror for k, p in ours.landmarks_of(options.shared, other, evaluator).items()}
     start_from_landmarks(marks, patient_marks, folder / "start.txt")
     begin, used = time.time(), resource.getrusage(resource.RUSAGE_CHILDREN)
-    ours.run(["elastix", "-f", image, "-m", options.shared / f"data/phantom/{name}.nii.gz", "-fMask", folder / "mask.nii.gz", "-t0", folder / "start.txt",
+    evaluation.run(["elastix", "-f", image, "-m", options.shared / f"data/phantom/{name}.nii.gz", "-fMask", folder / "mask.nii.gz", "-t0", folder / "start.txt",
               "-p", parameters(AFFINE, folder / "affine.txt"), "-p", parameters(SPLINE, folder / "spline.txt"), "-threads", options.threads, "-out", folder])
     transform = folder / "TransformParameters.1.txt"
     if not transform.exists():
@@ -167,7 +152,7 @@ def fused(surfaces, evaluator):
     dims = np.ceil((clouds.max(0) + 5.0 - origin) / FUSION_STEP).astype(int) + 1
     mean = np.zeros(dims[::-1], np.float32)
     for points, triangles in surfaces:
-        inside = np.asarray(evaluator.fill(surface(points, triangles), origin, dims, FUSION_STEP)).reshape(dims[::-1]) > 0
+        inside = np.asarray(evaluator.fill(cartilage_figures.surface_of(points, triangles), origin, dims, FUSION_STEP)).reshape(dims[::-1]) > 0
         mean += ndimage.distance_transform_edt(~inside) - ndimage.distance_transform_edt(inside)
     grid = vtk.vtkImageData()
     grid.SetDimensions(*dims)
@@ -185,9 +170,7 @@ def print_figures(label, name, folder, seconds, processor, options, evaluator):
     cells, lines = [], []
     for s in ours.STRUCTURES:
         truth = ours.truth_path(options.shared, *ours.subject_and_side(name), s)
-        judged = ours.run(["/usr/bin/python3", evaluator.__file__, folder / f"{s}.ply", truth, "--image",
-                           options.shared / f"data/phantom/{name}.nii.gz", "--json"])
-        d = json.loads(judged.stdout)
+        d = evaluation.distances(folder / f"{s}.ply", truth, options.shared / f"data/phantom/{name}.nii.gz", evaluator)
         cells.append(f"{s} {d['assd']:.2f} / {d['hd95']:.2f}")
         if s.endswith("cartilage"):
             f = cartilage_figures.figures(folder / f"{s}.ply", truth, evaluator)
@@ -196,8 +179,7 @@ def print_figures(label, name, folder, seconds, processor, options, evaluator):
 
 
 def compare(name, options, evaluator):
-    rng = np.random.default_rng([options.seed, *name.encode()])
-    marks = {k: p + rng.normal(0, options.error / np.sqrt(3), 3) for k, p in ours.landmarks_of(options.shared, name, evaluator).items()}
+    marks = evaluation.noisy(ours.landmarks_of(options.shared, name, evaluator), name, options.error, options.seed)
     atlases = training(name, options.shared)[: options.atlases]
     found = {other: register(name, other, marks, options, evaluator) for other in atlases}
     same = [o for o in atlases if contrast_of(o) == contrast_of(name)] or atlases
@@ -207,23 +189,18 @@ def compare(name, options, evaluator):
         folder.mkdir(exist_ok=True)
         for s in ours.STRUCTURES:
             surfaces = [found[o][0][s] for o in chosen]
-            write(surface(*surfaces[0]) if len(surfaces) == 1 else fused(surfaces, evaluator), folder / f"{s}.ply")
+            write(cartilage_figures.surface_of(*surfaces[0]) if len(surfaces) == 1 else fused(surfaces, evaluator), folder / f"{s}.ply")
         print_figures(label, name, folder, sum(found[o][2] for o in chosen), sum(found[o][3] for o in chosen), options, evaluator)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = evaluation.parser(__doc__, work="/tmp/coxa_elastix", coxa=False)
     parser.add_argument("phantoms")
-    parser.add_argument("--shared", type=pathlib.Path, default=ours.ROOT.parent / "shared")
-    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_elastix"))
     parser.add_argument("--error", type=float, default=3.0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--atlases", type=int, default=5)
     parser.add_argument("--threads", type=int, default=os.cpu_count())
-    options = parser.parse_args()
-    sys.path.insert(0, str(options.shared / "eval"))
-    import surface_distance as evaluator
-
+    options, evaluator = evaluation.begin(parser)
     for name in options.phantoms.split(","):
         compare(name, options, evaluator)
 

@@ -7,15 +7,13 @@ Conditions: snr10 (noise is added until muscle has a signal-to-noise ratio of 10
 from 0.6 to 1.4 along its diagonal, beside the 25 % it has), half (of the volume in view is kept, about the femoral head).
 Atlases, landmarks (normal, 3 mm) and distances as in evaluate_segmentation.py, --work being its directory.
 """
-import argparse
 import json
-import pathlib
-import sys
 
 import nibabel
 import numpy as np
 
 import evaluate_segmentation as segmentation
+import evaluation
 
 LPS = np.diag([-1.0, -1.0, 1.0, 1.0])
 
@@ -49,33 +47,20 @@ CONDITIONS = {"snr10": noisier, "shading": shaded, "half": half_seen}
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--coxa", default=segmentation.ROOT / "build/release/coxa")
-    parser.add_argument("--shared", type=pathlib.Path, default=segmentation.ROOT.parent / "shared")
-    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_evaluation"))
+    parser = evaluation.parser(__doc__)
     parser.add_argument("--only", default="m4_left_dess,m10_left_t1")
     parser.add_argument("--conditions", default=",".join(CONDITIONS))
     parser.add_argument("--error", type=float, default=3.0)
     parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
-    sys.path.insert(0, str(options.shared / "eval"))
-    import surface_distance as evaluator
-
-    atlases, work = options.work, options.work / "conditions"
-    work.mkdir(parents=True, exist_ok=True)
+    options, evaluator = evaluation.begin(parser)
+    options.atlases = options.work
     print(f"{'':30s} " + " ".join(f"{s:>26s}" for s in segmentation.STRUCTURES) + "   (assd / hd95 / bias, mm)")
     for name in options.only.split(","):
         path = options.shared / "data/phantom" / f"{name}.nii.gz"
         about = json.loads(path.with_name(f"{name}.json").read_text())
         for condition in options.conditions.split(","):
-            options.work = atlases
-            segmentation.atlas_without(name, options)  # built where it is not there yet
-            options.work = work / condition
-            options.work.mkdir(exist_ok=True)
-            for atlas in atlases.glob("atlas_without_*"):
-                link = options.work / atlas.name
-                if not link.exists():
-                    link.symlink_to(atlas.resolve())
+            options.work = options.atlases / "conditions" / condition
+            options.work.mkdir(parents=True, exist_ok=True)
             image = options.work / f"{name}.nii.gz"
             nibabel.save(CONDITIONS[condition](nibabel.load(path), about), image)
             good = segmentation.segmented(image, name, options, evaluator)

@@ -7,14 +7,10 @@ Each simulated image of ../shared/data/phantom (evaluate_segmentation.py: same a
 landmarks, and N times from landmarks moved by vectors spread evenly over a ball of --error (10) mm.  Prints per structure the
 average distance (both ways, in view: surface_distance.py --image) of each result from the one of exact landmarks, and from the truth.
 """
-import argparse
-import json
-import pathlib
-import sys
-
 import numpy as np
 
 import evaluate_segmentation as segmentation
+import evaluation
 
 
 def moved(marks, error, rng):
@@ -24,32 +20,12 @@ def moved(marks, error, rng):
     return {name: p + w for (name, p), w in zip(marks.items(), ways)}
 
 
-def segmented(image, name, marks, out, options):
-    side = segmentation.subject_and_side(name)[1]
-    table = out.with_name(out.name + "_landmarks.csv")
-    table.write_text("name,x,y,z\n" + "".join(f"{k}_{side}," + ",".join(f"{x:.3f}" for x in p) + "\n" for k, p in marks.items()))
-    return segmentation.run([options.coxa, "segment", "--resume", "--image", image, "--side", side, "--landmarks", table, "--atlas",
-                             segmentation.atlas_without(name, options), "--structures", "bones,cartilage", "--out", out]).returncode == 0
-
-
-def distance(a, b, image, evaluator):
-    done = segmentation.run(["/usr/bin/python3", evaluator.__file__, a, b, "--image", image, "--json"])
-    return json.loads(done.stdout)["assd"]
-
-
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--coxa", default=segmentation.ROOT / "build/release/coxa")
-    parser.add_argument("--shared", type=pathlib.Path, default=segmentation.ROOT.parent / "shared")
-    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_evaluation"))
+    parser = evaluation.parser(__doc__)
     parser.add_argument("--only", default="m4_left_dess,m10_left_t1")
     parser.add_argument("--error", type=float, default=10.0)
     parser.add_argument("--seeds", type=int, default=2)
-    options = parser.parse_args()
-    sys.path.insert(0, str(options.shared / "eval"))
-    import surface_distance as evaluator
-
-    options.work.mkdir(parents=True, exist_ok=True)
+    options, evaluator = evaluation.begin(parser)
     print(f"{'':24s}" + "".join(f"{s:>24s}" for s in segmentation.STRUCTURES) + "   (moved / from the truth, mm)")
     for name in options.only.split(","):
         image = options.shared / "data/phantom" / f"{name}.nii.gz"
@@ -59,14 +35,14 @@ def main():
         for seed in range(options.seeds + 1):
             rng = np.random.default_rng([seed, *name.encode()])
             out = options.work / f"{name}_moved_{seed}" if seed else exact
-            if not segmented(image, name, moved(marks, options.error, rng) if seed else marks, out, options):
+            if not segmentation.segment(image, name, moved(marks, options.error, rng) if seed else marks, out, options, "--resume"):
                 print(f"{out.name:24s} failed", flush=True)
                 continue
             cells = []
             for s in segmentation.STRUCTURES:
                 file, truth = f"{s}.ply", segmentation.truth_path(options.shared, subject, side, s)
-                cells.append(f"{distance(out / file, exact / file, image, evaluator) if seed else 0.0:.3f} / "
-                             f"{distance(out / file, truth, image, evaluator):.3f}")
+                way = evaluation.distances(out / file, exact / file, image, evaluator)["assd"] if seed else 0.0
+                cells.append(f"{way:.3f} / {evaluation.distances(out / file, truth, image, evaluator)['assd']:.3f}")
             print(f"{out.name:24s}" + "".join(f"{c:>24s}" for c in cells), flush=True)
 
 

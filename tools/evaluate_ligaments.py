@@ -8,15 +8,13 @@ reference's; an end is the tenth of the surface that is farthest from the other 
 ring that crosses the notch, ours ends at the transverse ligament: it is judged with and without the hours of the notch.
 The references were looked at for this alone; no figure of the models was chosen by them.
 """
-import argparse
-import pathlib
 import subprocess
-import sys
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+import evaluation
+
 HIPS = ("vhf/left", "vhf/right", "vhm/left")
 ENDS = {"hip_bone": "femur", "femur": "hip_bone"}
 SAMPLES = 20000
@@ -76,14 +74,9 @@ def judge(hip, options, surfaces):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--coxa", default=ROOT / "build/release/coxa")
-    parser.add_argument("--shared", type=pathlib.Path, default=ROOT.parent / "shared")
-    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_ligaments"))
+    parser = evaluation.parser(__doc__, work="/tmp/coxa_ligaments")
     parser.add_argument("--judge", action="store_true")
-    options = parser.parse_args()
-    sys.path.insert(0, str(options.shared / "eval"))
-    import surface_distance as surfaces
+    options, surfaces = evaluation.begin(parser)
     for hip in HIPS:
         if not options.judge:
             (options.work / hip).parent.mkdir(parents=True, exist_ok=True)

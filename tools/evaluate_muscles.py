@@ -6,13 +6,10 @@ usage: evaluate_muscles.py [--coxa build/release/coxa] [--shared ../shared] [--w
 Images, landmarks and atlases are those of evaluate_segmentation.py, which see; muscles are judged by label_distance.py and by
 their overlap with the true labels (Dice).  --picture puts outlines over four slices of each image into DIR.
 """
-import argparse
-import pathlib
-import sys
-
 import numpy as np
 
 import evaluate_segmentation as bones
+import evaluation
 import thigh_phantoms
 
 # what is smaller in view than this is shown but not counted in the mean, ml
@@ -56,18 +53,13 @@ def judge(folder, name, options, evaluator):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--coxa", default=bones.ROOT / "build/release/coxa")
-    parser.add_argument("--shared", type=pathlib.Path, default=bones.ROOT.parent / "shared")
-    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_evaluation"))
+    parser = evaluation.parser(__doc__)
     parser.add_argument("--error", type=float, default=3.0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="")
     parser.add_argument("--judge", action="store_true")
     parser.add_argument("--picture", action="store_true")
-    options = parser.parse_args()
-    sys.path.insert(0, str(options.shared / "eval"))
-    import surface_distance as evaluator
+    options, evaluator = evaluation.begin(parser)
     options.structures = "bones,muscles"
     wanted = [w for w in options.only.split(",") if w]
     for image in sorted((options.shared / "data/phantom").glob("thigh_*.nii.gz")):

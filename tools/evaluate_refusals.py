@@ -11,9 +11,7 @@ person would set them in that image) and without.  The outcome is
   WRONG     a result without such words and no hip there, or the femur farther off
 Atlases are those of evaluate_segmentation.py, kept in DIR.  The last line counts what is WRONG; it is the exit code.
 """
-import argparse
 import json
-import pathlib
 import subprocess
 import sys
 
@@ -22,6 +20,7 @@ import numpy as np
 from scipy import ndimage as ndi
 
 import evaluate_segmentation as bones
+import evaluation
 
 LARGEST = 3.0  # mm, mean distance of a femur that counts as right
 LPS = np.diag([-1.0, -1.0, 1.0, 1.0])
@@ -202,8 +201,7 @@ def read_base(options, name, evaluator):
     # the mean over an even number of voxels lies half a voxel before the one it is written to
     affine[:3, 3] += affine[:3, :3] @ (first - np.where(steps % 2 == 0, 0.5, 0.0))
     affine[:3, :3] *= steps
-    rng = np.random.default_rng([1, *name.encode()])
-    marks = {k: p + rng.normal(0, 3 / np.sqrt(3), 3) for k, p in bones.landmarks_of(options.shared, name, evaluator).items()}
+    marks = evaluation.noisy(bones.landmarks_of(options.shared, name, evaluator), name, error=3.0, seed=1)
     return Case(values, affine, marks, name.split("_")[1])
 
 
@@ -225,26 +223,18 @@ def outcome(case, way, stem, name, options, evaluator):
     distance = np.inf
     if case.hip:
         subject, side = bones.subject_and_side(name)
-        judged = subprocess.run(["/usr/bin/python3", evaluator.__file__, str(options.work / stem / "femur.ply"),
-                                 str(bones.truth_path(options.shared, subject, side, "femur")), "--image", str(image), "--json"],
-                                capture_output=True, text=True)
-        distance = json.loads(judged.stdout)["assd"]
+        truth = bones.truth_path(options.shared, subject, side, "femur")
+        distance = evaluation.distances(options.work / stem / "femur.ply", truth, image, evaluator)["assd"]
     word = "low" if said else "right" if distance <= LARGEST else "WRONG"
     return word, f"femur {distance:.2f} mm off, quality {record['figures']['quality']:.2f}" + (f"; {said[0][:100]}" if said else "")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--coxa", default=bones.ROOT / "build/release/coxa")
-    parser.add_argument("--shared", type=pathlib.Path, default=bones.ROOT.parent / "shared")
-    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_evaluation"))
+    parser = evaluation.parser(__doc__)
     parser.add_argument("--base", default="m4_left_dess,m3_right_t1")
     parser.add_argument("--only", default="")
     parser.add_argument("--ways", default="landmarks,none")
-    options = parser.parse_args()
-    sys.path.insert(0, str(options.shared / "eval"))
-    import surface_distance as evaluator
-    options.work.mkdir(parents=True, exist_ok=True)
+    options, evaluator = evaluation.begin(parser)
     wanted = [w for w in options.only.split(",") if w]
     n_wrong = 0
     for name in options.base.split(","):

@@ -11,22 +11,18 @@ Visible Human bones are judged by surface_distance.py --image, those of label ma
 Atlases are kept in DIR and reused: delete it to start afresh; --judge segments nothing and judges the results there.  Distances
 by surface_distance.py --image; of each cartilage also its sides, its thickness and where it is thick its overlap (cartilage_figures.py).
 """
-import argparse
-import json
-import pathlib
-import subprocess
-import sys
 import time
 
 import numpy as np
 
 import cartilage_figures
 import thigh_phantoms
+from evaluation import begin, distance_text, distances, noisy, run, write_landmarks
+from evaluation import parser as evaluation_parser
 from libhip import surface_path
 
 GROUPS = [("m2", "m4"), ("m5", "m6", "m8"), ("m1", "m3", "m10", "m11")]
 STRUCTURES = ["femur", "hip_bone", "femoral_cartilage", "acetabular_cartilage"]
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def truth_path(shared, subject, side, structure):
@@ -73,19 +69,12 @@ def landmarks_of(shared, name, surfaces):
     return {name: (p + centre) * mirror for name, p in marks.items()}
 
 
-def run(command):
-    done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
-    if done.returncode:
-        print(f"{' '.join(map(str, command))}\n  ended with {done.returncode}: {done.stderr.strip()[-400:]}", file=sys.stderr)
-    return done
-
-
 def atlas_without(name, options):
     """The atlas free of the phantom's subject, and of every libhip hip bone where the phantom's is one; built where it is not there yet."""
     subject = subject_and_side(name)[0]
     thigh = thigh_phantoms.is_thigh(name)
     group = (subject,) if thigh else next(g for g in GROUPS if subject in g)
-    atlas = options.work / f"atlas_without_{'_'.join(group)}.coxa-atlas"
+    atlas = getattr(options, "atlases", options.work) / f"atlas_without_{'_'.join(group)}.coxa-atlas"
     if not atlas.exists():
         exclude = [a for s in group for a in ("--exclude", s)]
         warped = [] if thigh else ["--exclude-structure", "libhip:hip_bone"]
@@ -93,18 +82,19 @@ def atlas_without(name, options):
     return atlas
 
 
-def segmented(image, name, options, evaluator):
-    """Segments one phantom into DIR/name.  Returns whether that went well."""
+def segment(image, name, marks, out, options, *more):
+    """Segments one phantom from landmarks into a folder, the landmarks' table beside it.  Returns whether that went well."""
     side = subject_and_side(name)[1]
-    atlas = atlas_without(name, options)
-    rng = np.random.default_rng([options.seed, *name.encode()])
-    marks = landmarks_of(options.shared, name, evaluator)
-    table = options.work / f"{name}_landmarks.csv"
-    rows = [f"{k}_{side}," + ",".join(f"{x:.3f}" for x in p + rng.normal(0, options.error / np.sqrt(3), 3)) for k, p in marks.items()]
-    table.write_text("name,x,y,z\n" + "\n".join(rows) + "\n")
-    done = run([options.coxa, "segment", "--image", image, "--side", side, "--landmarks", table, "--atlas", atlas,
-                "--structures", getattr(options, "structures", "bones,cartilage"), "--out", options.work / name])
-    return done.returncode == 0
+    table = out.with_name(out.name + "_landmarks.csv")
+    write_landmarks(table, marks, side)
+    return run([options.coxa, "segment", *more, "--image", image, "--side", side, "--landmarks", table, "--atlas", atlas_without(name, options),
+                "--structures", getattr(options, "structures", "bones,cartilage"), "--out", out]).returncode == 0
+
+
+def segmented(image, name, options, evaluator):
+    """Segments one phantom from noisy landmarks into DIR/name.  Returns whether that went well."""
+    marks = noisy(landmarks_of(options.shared, name, evaluator), name, options.error, options.seed)
+    return segment(image, name, marks, options.work / name, options)
 
 
 def judge(image, name, options, evaluator):
@@ -119,9 +109,7 @@ def judge(image, name, options, evaluator):
         if not result.exists():
             cells.append("failed")
             continue
-        judged = run(["/usr/bin/python3", evaluator.__file__, result, truth, "--image", image, "--json"])
-        d = json.loads(judged.stdout)
-        cells.append(f"{d['assd']:.3f} / {d['hd95']:.2f} / {d['bias']:+.2f}")
+        cells.append(distance_text(distances(result, truth, image, evaluator)))
         if structure.endswith("cartilage"):
             f = cartilage_figures.figures(result, truth, evaluator)
             lines.append(f"    {structure:22s} bone side {f['bone_side']:.3f}  articular side {f['articular_side']:.3f}"
@@ -130,19 +118,12 @@ def judge(image, name, options, evaluator):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--coxa", default=ROOT / "build/release/coxa")
-    parser.add_argument("--shared", type=pathlib.Path, default=ROOT.parent / "shared")
-    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_evaluation"))
+    parser = evaluation_parser(__doc__)
     parser.add_argument("--error", type=float, default=3.0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="")
     parser.add_argument("--judge", action="store_true")
-    options = parser.parse_args()
-    sys.path.insert(0, str(options.shared / "eval"))
-    import surface_distance as evaluator
-
-    options.work.mkdir(parents=True, exist_ok=True)
+    options, evaluator = begin(parser)
     wanted = [w for w in options.only.split(",") if w]
     print(f"{'phantom':22s} " + " ".join(f"{s:>26s}" for s in STRUCTURES) + "   seconds  (assd / hd95 / bias, mm)")
     for image in sorted((options.shared / "data/phantom").glob("*.nii.gz")):

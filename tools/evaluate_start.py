@@ -8,15 +8,13 @@ Patients are drawn by coxa phantom with the seeds first, first + 1, …, sides i
 landmarks is the same as the other where the vertices of femur and hip bone lie at most 0.1 mm apart on average.  One that is not
 is flagged where it is refused or its record says "low confidence".
 """
-import argparse
 import json
-import pathlib
 import subprocess
-import sys
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+import evaluation
+
 SAME = 0.1  # mm
 
 
@@ -33,18 +31,12 @@ def segmented(folder, name, side, landmarks, options):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--coxa", default=ROOT / "build/release/coxa")
-    parser.add_argument("--shared", type=pathlib.Path, default=ROOT.parent / "shared")
-    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("/tmp/coxa_start"))
+    parser = evaluation.parser(__doc__, work="/tmp/coxa_start")
     parser.add_argument("--count", type=int, default=10)
     parser.add_argument("--first", type=int, default=101)
     parser.add_argument("--voxel", type=float, default=1.5)
     parser.add_argument("--threads", default="1")
-    options = parser.parse_args()
-    sys.path.insert(0, str(options.shared / "eval"))
-    import surface_distance as surfaces
-    options.work.mkdir(parents=True, exist_ok=True)
+    options, surfaces = evaluation.begin(parser)
     n_same = n_flagged = n = 0
     for seed in range(options.first, options.first + options.count):
         side = ("left", "right")[seed % 2]
@@ -61,12 +53,8 @@ def main():
             continue
         points = lambda name, bone: surfaces.arrays(surfaces.read(str(folder / name / f"{bone}.ply")))[0]
         apart = {b: np.linalg.norm(points("with", b) - points("without", b), axis=1).mean() for b in ("femur", "hip_bone")}
-        surface = {}
-        for bone in apart:
-            judged = subprocess.run(["/usr/bin/python3", surfaces.__file__, str(folder / "with" / f"{bone}.ply"),
-                                     str(folder / "without" / f"{bone}.ply"), "--image", str(folder / "image.nii.gz"), "--json"],
-                                    capture_output=True, text=True, check=True)
-            surface[bone] = json.loads(judged.stdout)["assd"]
+        surface = {b: evaluation.distances(folder / "with" / f"{b}.ply", folder / "without" / f"{b}.ply", folder / "image.nii.gz", surfaces)["assd"]
+                   for b in apart}
         same = max(apart.values()) <= SAME
         low = any("low confidence" in w for w in none["warnings"])
         n_same += same

@@ -1,5 +1,4 @@
 """The phantoms thigh_*: whose they are, their true surfaces and labels, and how results are judged on them."""
-import json
 import pathlib
 import subprocess
 
@@ -7,6 +6,8 @@ import nibabel as nib
 import numpy as np
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk
+
+from evaluation import distance_text, distances
 
 VISIBLE_HUMAN = ("vhf", "vhm")
 # label numbers (../shared/data/README.md); structures that a label map merges are judged as one
@@ -108,10 +109,7 @@ def judge_bones(work, shared, name, image, evaluator):
             cells[structure] = "failed"
         elif subject in VISIBLE_HUMAN:
             truth = shared / "data/visible_human" / subject / side / f"{structure}.ply"
-            done = subprocess.run(["/usr/bin/python3", evaluator.__file__, result, truth, "--image", image, "--json"],
-                                  capture_output=True, text=True)
-            d = json.loads(done.stdout)
-            cells[structure] = f"{d['assd']:.3f} / {d['hd95']:.2f} / {d['bias']:+.2f}"
+            cells[structure] = distance_text(distances(result, truth, image, evaluator))
         else:
             cells[structure] = "{:.3f} / {:.2f} / {:+.2f}".format(*label_distance(result, shared, name, values))
     return cells
