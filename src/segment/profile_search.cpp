@@ -33,12 +33,16 @@ double blur_sigma(const Volume& volume, const Vec3& normal, double image_sigma) 
 VecX smoothed_profile(const VecX& profile, double sigma_samples) {
   if (sigma_samples < 0.2) return profile;
   const Index n = static_cast<Index>(profile.size());
+  VecX weight(n);  // by distance in samples
+  for (Index d = 0; d < n; ++d) {
+    const double t = d / sigma_samples;
+    weight[d] = std::exp(-0.5 * t * t);
+  }
   VecX out(n);
   for (Index i = 0; i < n; ++i) {
     double sum = 0.0, total = 0.0;
     for (Index j = 0; j < n; ++j) {
-      const double t = (i - j) / sigma_samples;
-      const double w = std::exp(-0.5 * t * t);
+      const double w = weight[std::abs(i - j)];
       sum += w * profile[j];
       total += w;
     }
