@@ -3,16 +3,11 @@ import type { MapName } from "../colour/maps";
 import { rangeOf, type Scale } from "../colour/scale";
 import { readable, type Case } from "../core/case";
 import { labelled, make, select } from "../core/dom";
+import { kSurfaceFields } from "../core/surface_fields";
 import type { Bundle } from "../core/bundle";
 import type { HipModel } from "../scene/hip_model";
 
 type RangeMode = "fixed" | "frame" | "own";
-/** Fields of the segmentation's surfaces, beside those of the simulation. */
-const kSurfaceFields = [
-  { key: "confidence", label: "confidence of the segmentation", unit: "" },
-  { key: "uncertainty_mm", label: "95 % interval of the surface, ±", unit: "mm" },
-  { key: "cartilage_thickness_mm", label: "cartilage thickness over the bone", unit: "mm" },
-];
 
 /** What surfaces are coloured by: field, map and range; with the colour bar that says so. */
 export class FieldChoice {

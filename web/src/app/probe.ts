@@ -2,6 +2,7 @@ import { hourOf } from "../charts/clock";
 import { readable, type Case, type Vec3 } from "../core/case";
 import { button, byId, make } from "../core/dom";
 import { shortNumber } from "../core/numbers";
+import { kSurfaceFields } from "../core/surface_fields";
 import type { HipModel } from "../scene/hip_model";
 import type { Hit, Viewer } from "../scene/viewer";
 
@@ -51,7 +52,7 @@ export class Probe {
       const hour = hourOf(this.info.clock, place);
       rows.push(["clock", `${(hour < 1 ? hour + 12 : hour).toFixed(1)} h`]);
     }
-    const fields = [...this.info.fields, { key: "confidence", label: "confidence", unit: "" }, { key: "uncertainty_mm", label: "surface ±", unit: "mm" }, { key: "cartilage_thickness_mm", label: "cartilage thickness", unit: "mm" }];
+    const fields = [...this.info.fields, ...kSurfaceFields.map((f) => ({ ...f, label: f.short }))];
     for (const { key, label, unit } of fields) {
       const values = this.hip.values(layer.name, key);
       if (values) rows.push([label, `${shortNumber(mix((c) => values[c] ?? NaN))} ${unit}`]);
