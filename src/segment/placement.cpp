@@ -23,7 +23,7 @@ constexpr double kLargestScale = 1.5;
 /// more.
 constexpr double kLargestMisfit = 25.0;
 /// rad. Nobody lies turned so far from the frame of the atlas: head, back and left are LPS'.
-constexpr double kLargestTurn = 1.57;
+constexpr double kLargestTurn = radians(90.0);
 /// mm. A landmark this deep in a bone is the centre of a round end; another bone this near shares
 /// it as its socket.
 constexpr double kJointDepth = 14.0;

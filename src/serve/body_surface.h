@@ -36,6 +36,13 @@ struct BodySurface {
 };
 BodySurface body_surface(const TetMesh& mesh);
 
+/// One of the two cartilages as meshed, and its boundary.
+struct Body {
+  std::string name;  ///< acetabular, femoral
+  TetMesh mesh;
+  BodySurface surface;
+};
+
 /// Rows of a per-node matrix at the surface's vertices.
 MatX at_surface(const BodySurface& surface, const MatX& per_node);
 

@@ -3,7 +3,6 @@
 #include "pose_json.h"
 
 #include <coxa/core/error.h>
-#include <coxa/geom/fits.h>
 #include <coxa/io/config.h>
 #include <coxa/io/files.h>
 #include <coxa/io/surfaces.h>
@@ -11,10 +10,10 @@
 #include <coxa/serve/bundle.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "csv_table.h"
 #include "normal_curves.h"
+#include "stored_frame.h"
 
 namespace coxa::serve {
 namespace fs = std::filesystem;
@@ -47,29 +46,6 @@ Json movement_list() {
   std::sort(found.begin(), found.end());
   for (const std::string& name : found) names.push_back(name);
   return names;
-}
-
-std::string frame_file(const char* part, Index index) {
-  char name[40];
-  std::snprintf(name, sizeof name, "%s_%04d.vtu", part, static_cast<int>(index));
-  return name;
-}
-
-/// Nodal values of one body at one frame, from what the joint stage wrote.
-std::map<std::string, VecX> stored_fields(const io::TetFile& file) {
-  joint::StressFields fields;
-  const MatX& nine = file.fields.at_tets.at("green_strain");
-  fields.green_strain.resize(nine.rows(), 6);
-  constexpr int kPlace[6] = {0, 4, 8, 1, 5, 2};  // xx yy zz xy yz zx of a full tensor by rows
-  for (int c = 0; c < 6; ++c) fields.green_strain.col(c) = nine.col(kPlace[c]);
-  fields.principal_stress = file.fields.at_tets.at("principal_stress_MPa");
-  fields.principal_strain = file.fields.at_tets.at("principal_strain");
-  fields.von_mises = file.fields.at_tets.at("von_mises_MPa");
-  auto values = nodal_fields(file.mesh, fields);
-  values["contact_pressure"] = file.fields.at_points.at("contact_pressure_MPa");
-  if (const auto gap = file.fields.at_points.find("gap_mm"); gap != file.fields.at_points.end())
-    values["gap"] = gap->second;
-  return values;
 }
 
 }  // namespace
@@ -279,31 +255,10 @@ RigidTransform CaseFolder::unsolved_pose(Index index) const {
 std::string CaseFolder::frame(Index index) const {
   const fs::path frames = folder_ / "joint/frames";
   require(index >= 0, "there is no frame ", index);
-  if (!fs::exists(frames / frame_file("femoral", index)))  // without a result: the pose alone
+  if (!has_stored_frame(frames, index))  // without a result: the pose alone
     return Bundle(Json{{"frame", index}, {"femur_pose", json_of(unsolved_pose(index))}}.dump())
         .bytes();
-  RigidTransform X_II;
-  std::vector<std::pair<std::string, MatX>> arrays;
-  for (const char* name : {"acetabular", "femoral"}) {
-    const io::TetFile file = io::read_tets_with_fields(frames / frame_file(name, index));
-    const auto kept = read_body(name);
-    const Body& reference = *kept;
-    require(file.mesh.n_vertices() == reference.mesh.n_vertices(), "frame ", index, " has ",
-            file.mesh.n_vertices(), " nodes, the mesh ", reference.mesh.n_vertices(),
-            ": they are of different runs");
-    if (reference.name == "femoral") {
-      // the displacement counts from the femur's rigid pose, which is thus exact here
-      const Points rigid = file.mesh.points - Points(file.fields.at_points.at("displacement_mm"));
-      X_II = fit_rigid(reference.mesh.points, rigid);
-    }
-    arrays.emplace_back(reference.name + ".positions",
-                        at_surface(reference.surface, file.mesh.points));
-    for (const auto& [key, values] : stored_fields(file))
-      arrays.emplace_back(reference.name + "." + key, at_surface(reference.surface, values));
-  }
-  Bundle bundle(Json{{"frame", index}, {"femur_pose", json_of(X_II)}}.dump());
-  for (const auto& [key, values] : arrays) bundle.add(key, values);
-  return bundle.bytes();
+  return stored_frame(frames, index, {read_body("acetabular"), read_body("femoral")});
 }
 
 }  // namespace coxa::serve

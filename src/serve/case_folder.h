@@ -30,13 +30,6 @@ struct CaseInput {
   std::string fault;  ///< why there is no image; empty when there is one
 };
 
-/// One of the two cartilages as meshed, and its boundary.
-struct Body {
-  std::string name;  ///< acetabular, femoral
-  TetMesh mesh;
-  BodySurface surface;
-};
-
 /// A subject's folder, as far as it has got: what is there is read when asked for.
 class CaseFolder {
  public:
