@@ -51,16 +51,13 @@ TriMesh cut_out(const TriMesh& mesh, const std::vector<bool>& marked) {
   return sub_mesh(rest, solid).mesh;
 }
 
-double largest_move(const TriMesh& before, const TriMesh& after, const std::vector<bool>& marked) {
+// pieces that were cut off count as what was cut out does
+double largest_move(const TriMesh& before, const TriMesh& after) {
   const TriangleTree old_surface(before.points, before.triangles),
       new_surface(after.points, after.triangles);
   double squared = 0.0;
-  for (Index t = 0; t < before.n_triangles(); ++t)
-    if (marked[static_cast<std::size_t>(t)])
-      for (int k = 0; k < 3; ++k)
-        squared = std::max(
-            squared,
-            new_surface.nearest(before.points.row(before.triangles(t, k))).squared_distance);
+  for (const auto& p : before.points.rowwise())
+    squared = std::max(squared, new_surface.nearest(p.transpose()).squared_distance);
   for (Index t = 0; t < after.n_triangles(); ++t)
     squared = std::max(squared, old_surface.nearest(centroid(after, t)).squared_distance);
   return std::sqrt(squared);
@@ -100,7 +97,7 @@ TriMesh untangle(const TriMesh& mesh, const RepairOptions& options, RepairReport
   for (int ring = 0; ring < kMaxRings; ++ring, widen(mesh, marked)) {
     std::optional<TriMesh> result = attempt(mesh, marked, options.max_hole);
     if (!result) continue;
-    const double move = largest_move(mesh, *result, marked);
+    const double move = largest_move(mesh, *result);
     if (move > options.max_move)
       fail(ErrorCode::bad_mesh, where, "; cutting it out would move the surface by ", move,
            " mm, more than ", options.max_move, " mm");

@@ -47,24 +47,25 @@ double mean_edge(const TetGrid& grid, const Triangles& facets) {
   return sum / (3.0 * static_cast<double>(facets.rows()));
 }
 
-// places of the surface, and where the boundary is nearest to them
-std::vector<Place> places_of(const TetGrid& grid, const TriMesh& surface) {
-  constexpr double kSpacing = 0.4;  // along ridges, of the mean edge of the boundary
-  const Triangles facets = boundary_of(grid);
-  std::vector<Place> places;
-  for (const Vec3& p : places_on(surface, kSpacing * mean_edge(grid, facets)))
-    places.push_back({p, {}, 0.0});
-  Points points(static_cast<Index>(grid.x.size()), 3);
-  for (std::size_t v = 0; v < grid.x.size(); ++v) points.row(static_cast<Index>(v)) = grid.x[v];
-  const TriangleTree tree(points, facets);
+// where the boundary is nearest to some points
+std::vector<Place> places_at(const std::vector<Vec3>& points, const TetGrid& grid,
+                             const Triangles& facets) {
+  Points nodes(static_cast<Index>(grid.x.size()), 3);
+  for (std::size_t v = 0; v < grid.x.size(); ++v) nodes.row(static_cast<Index>(v)) = grid.x[v];
+  const TriangleTree tree(nodes, facets);
+  std::vector<Place> places(points.size());
   parallel_for(static_cast<std::int64_t>(places.size()), [&](Index i) {
     Place& place = places[at(i)];
+    place.p = points[at(i)];
     const NearestPoint nearest = tree.nearest(place.p);
     for (int k = 0; k < 3; ++k) place.facet[at(k)] = facets(nearest.triangle, k);
     place.distance = std::sqrt(nearest.squared_distance);
   });
   return places;
 }
+
+// along ridges, of the mean edge of the boundary
+constexpr double kSpacing = 0.4;
 
 NodeKind kept(NodeKind kind) {
   if (on_first_face(kind)) return NodeKind::first_corner;
@@ -239,7 +240,9 @@ class Cover {
 }  // namespace
 
 Index cover_far_places(TetGrid& grid, const TriMesh& surface, const CoverOptions& options) {
-  std::vector<Place> places = places_of(grid, surface);
+  const Triangles facets = boundary_of(grid);
+  std::vector<Place> places =
+      places_at(places_on(surface, kSpacing * mean_edge(grid, facets)), grid, facets);
   std::vector<Place> far;
   for (const Place& place : places)
     if (place.distance > options.limit) far.push_back(place);
@@ -259,30 +262,6 @@ Index cover_far_places(TetGrid& grid, const TriMesh& surface, const CoverOptions
     }
   }
   return drawn;
-}
-
-std::vector<Miss> misses(const TetGrid& grid, const TriMesh& surface) {
-  std::vector<Miss> found;
-  for (const Place& place : places_of(grid, surface)) found.push_back({place.p, place.distance});
-  const TriangleTree tree(surface.points, surface.triangles);
-  const Triangles facets = boundary_of(grid);
-  const std::size_t first = found.size();
-  found.resize(first + 4 * at(facets.rows()));
-  parallel_for(facets.rows(), [&](Index f) {
-    const Vec3 &a = grid.x[at(facets(f, 0))], &b = grid.x[at(facets(f, 1))],
-               &c = grid.x[at(facets(f, 2))];
-    std::size_t next = first + 4 * at(f);
-    for (const Vec3& p :
-         {Vec3((a + b + c) / 3.0), Vec3(0.5 * (a + b)), Vec3(0.5 * (b + c)), Vec3(0.5 * (c + a))})
-      found[next++] = {p, std::sqrt(tree.nearest(p).squared_distance)};
-  });
-  return found;
-}
-
-double envelope_error(const TetGrid& grid, const TriMesh& surface) {
-  double farthest = 0.0;
-  for (const Miss& miss : misses(grid, surface)) farthest = std::max(farthest, miss.distance);
-  return farthest;
 }
 
 }  // namespace coxa::meshing

@@ -24,16 +24,4 @@ struct CoverOptions {
 /// @returns how many were drawn or made
 Index cover_far_places(TetGrid& grid, const TriMesh& surface, const CoverOptions& options);
 
-/// A place and how far it is from what should pass through it, mm.
-struct Miss {
-  Vec3 p = Vec3::Zero();
-  double distance = 0.0;
-};
-
-/// How far the surface is from the boundary of the grid, by vertices, edge middles and ridges, and
-/// the boundary from the surface, by edge middles and centroids of its facets.
-std::vector<Miss> misses(const TetGrid& grid, const TriMesh& surface);
-/// The largest distance of all, mm.
-double envelope_error(const TetGrid& grid, const TriMesh& surface);
-
 }  // namespace coxa::meshing

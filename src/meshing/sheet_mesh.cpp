@@ -5,6 +5,7 @@
 #include "extrude.h"
 #include "flips.h"
 #include "mending.h"
+#include "misses.h"
 #include "node_freedom.h"
 #include "node_smoothing.h"
 #include "sheet_guide.h"
@@ -94,7 +95,7 @@ void check_worth_improving(const TetGrid& grid, const TriMesh& surface,
                            const MeshingOptions& options) {
   constexpr double kFarOff = 4.0;  // mm
   if (options.method != Method::automatic || options.layers || options.max_tets) return;
-  if (const double envelope = envelope_error(grid, surface); envelope > kFarOff)
+  if (const double envelope = envelope_error(boundary_surface(grid), surface); envelope > kFarOff)
     fail(ErrorCode::below_quality, "the medial grid misses the surface by ", envelope, " mm");
 }
 
@@ -151,7 +152,7 @@ MeshingResult mesh_sheet(const TriMesh& surface, const medial::SurfaceSides& sid
   result.report.sheetness = sides.sheetness;
   result.report.layers = options.layers.value_or(1);
   result.report.rim_rounding = guide.largest_rounding();
-  result.report.envelope = envelope_error(made.grid, surface);
+  result.report.envelope = envelope_error(boundary_surface(made.grid), surface);
   result.mesh = to_tet_mesh(made.grid);
   result.report.quality = tet_quality(result.mesh.points, result.mesh.tets);
   if (const double share = result.report.quality.volume / volume(surface); share < kLeastFilled)

@@ -1,15 +1,16 @@
 #include "solid_mesh.h"
 
-#include "cover.h"
 #include "feature_curves.h"
 #include "lattice.h"
 #include "limits.h"
+#include "misses.h"
 #include "solid_guide.h"
 #include "solid_improve.h"
 #include "tet_boundary.h"
 
 #include <coxa/core/error.h>
 #include <coxa/mesh/measures.h>
+#include <coxa/mesh/rebuild.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +30,7 @@ constexpr double kLargest = 0.08;      // of the diagonal: edge of the largest c
 constexpr double kCoarser = 1.3;       // growth of the flatness when elements are too many
 constexpr int kSizeTries = 24;
 constexpr double kMuchMissed = 0.25;    // mm, of the surface: worth another attempt
+constexpr double kMissed = 0.3;         // mm, of the surface: a limit missed
 constexpr int kMostTets = 200000;       // at first
 constexpr int kMostFinerTets = 400000;  // where finer cubes are needed to meet the surface
 
@@ -119,7 +121,7 @@ MeshingResult improved(TetGrid grid, const SolidGuide& guide, const TriMesh& sur
   const Index dropped = improve_solid(
       grid, guide, surface, {options.improvement_rounds, options.max_tets.value_or(kMostFinerTets)},
       monitor);
-  missed = misses(grid, surface);
+  missed = misses(boundary_surface(grid), surface);
   MeshingResult result = result_of(grid, missed);
   if (dropped > 0)
     result.report.notes.push_back(
@@ -132,15 +134,13 @@ bool any_much_missed(const std::vector<Miss>& missed) {
                      [](const Miss& m) { return m.distance > kMuchMissed; });
 }
 
-// half as large cubes where the surface was missed; returns whether there are such places
-bool update_fine_places(const std::vector<Miss>& missed, const Octree& octree,
+// half as large cubes where the surface was missed
+void update_fine_places(const std::vector<Miss>& missed, const Octree& octree,
                         OctreeOptions& cubes) {
-  constexpr double kMissed = 0.2;  // mm
-  const bool any = any_much_missed(missed);
+  constexpr double kAlsoMissed = 0.2;  // mm
   for (const Miss& miss : missed)
-    if (any && miss.distance > kMissed)
+    if (miss.distance > kAlsoMissed)
       cubes.fine_places.push_back({miss.p, 0.5 * octree.size_at(miss.p)});
-  return any;
 }
 
 // ridges along which the mesh should run, where it misses the surface without that
@@ -148,17 +148,35 @@ FeatureCurves ridges_missed(const TriMesh& surface, const MeshingResult& made,
                             const MeshingOptions& options, const OctreeOptions& cubes) {
   // mm, of the surface: asked for, and where the number of elements is given and cubes cannot get
   // finer
-  constexpr double kLimit = 0.3, kGivenNumber = 0.15;
+  constexpr double kGivenNumber = 0.15;
   constexpr double kShortest = 3.0;  // of the smallest cubes
-  const bool met = made.report.envelope <= (options.max_tets ? kGivenNumber : kLimit);
+  const bool met = made.report.envelope <= (options.max_tets ? kGivenNumber : kMissed);
   return met ? FeatureCurves{} : feature_curves(surface, kShortest * cubes.smallest);
 }
 
-}  // namespace
+// finer cubes where the surface was missed, and where they are too many, coarser ones where it is
+// met well; or else as many of them as allowed everywhere
+// @returns nullopt where that was tried already
+std::optional<Filling> finer_filling(const TriMesh& surface, Filler& filler,
+                                     const std::vector<Miss>& missed, const Octree& octree,
+                                     int max_tets, int round, OctreeOptions& cubes,
+                                     const Monitor& monitor) {
+  constexpr int kCoarserTries = 2;
+  update_fine_places(missed, octree, cubes);
+  auto [filled, made] = filler.fill(cubes, max_tets);
+  for (int k = 0; k < kCoarserTries && filled > 1.0; ++k) {
+    cubes.flatness *= kCoarser;
+    std::tie(filled, made) = filler.fill(cubes, max_tets);
+  }
+  if (filled <= 1.0) return std::move(made);
+  if (round > 0) return std::nullopt;
+  return fill_within(surface, filler, max_tets, cubes, monitor);
+}
 
-MeshingResult mesh_solid(const TriMesh& surface, const MeshingOptions& options,
-                         const Monitor& monitor) {
-  constexpr int kFinerRounds = 3, kCoarserTries = 2;
+// the best of several fillings
+MeshingResult filled(const TriMesh& surface, const MeshingOptions& options,
+                     const Monitor& monitor) {
+  constexpr int kFinerRounds = 3;
   const TriangleTree tree(surface.points, surface.triangles);
   const SolidGuide guide(tree);
   const int max_tets = options.max_tets.value_or(kMostTets);
@@ -171,31 +189,53 @@ MeshingResult mesh_solid(const TriMesh& surface, const MeshingOptions& options,
   std::vector<Miss> missed;
   MeshingResult best = improved(std::move(filling.grid), guide, surface, options, missed,
                                 part_of(monitor, "improve", 0.4, 0.7));
-  for (int round = 0; round < kFinerRounds && update_fine_places(missed, filling.octree, cubes);
-       ++round) {
-    auto [filled, made] = filler.fill(cubes, max_finer);
-    // room for finer cubes is made where the surface is met well
-    for (int k = 0; k < kCoarserTries && filled > 1.0; ++k) {
-      cubes.flatness *= kCoarser;
-      std::tie(filled, made) = filler.fill(cubes, max_finer);
-    }
-    if (filled > 1.0) break;
+  for (int round = 0; round < kFinerRounds && any_much_missed(missed); ++round) {
+    const Monitor part = part_of(monitor, "refine", 0.7 + 0.1 * round, 0.8 + 0.1 * round);
+    auto made =
+        finer_filling(surface, filler, missed, filling.octree, max_finer, round, cubes, part);
+    if (!made) break;
     used = cubes;
     filling = std::move(*made);
-    MeshingResult finer =
-        improved(std::move(filling.grid), guide, surface, options, missed,
-                 part_of(monitor, "refine", 0.7 + 0.1 * round, 0.8 + 0.1 * round));
+    MeshingResult finer = improved(std::move(filling.grid), guide, surface, options, missed, part);
     if (nearer_to_limits(finer.report, best.report)) best = std::move(finer);
   }
   const SolidGuide along_ridges(tree, ridges_missed(surface, best, options, used));
   if (!along_ridges.features().curves.empty())
     if (auto again = filler.fill(used, max_finer).second) {
       MeshingResult other = improved(std::move(again->grid), along_ridges, surface, options, missed,
-                                     part_of(monitor, "ridges", 0.9, 1.0));
+                                     part_of(monitor, "ridges", 0.9, 0.95));
       if (nearer_to_limits(other.report, best.report)) best = std::move(other);
     }
   add_notes(surface, used.flatness, best.report);
   return best;
+}
+
+// a surface whose parts too thin for any element became walls; nullopt where there are none
+std::optional<TriMesh> with_walls(const TriMesh& surface) {
+  constexpr double kSpacing = 0.2, kHalf = 0.15, kEdge = 0.5;  // mm
+  constexpr double kMostSamples = 6e7;
+  const Bounds box = bounds(surface.points);
+  if ((box.high - box.low).prod() > kMostSamples * kSpacing * kSpacing * kSpacing)
+    return std::nullopt;
+  Rebuilt rebuilt =
+      rebuild(surface, {.spacing = kSpacing, .thickening = kHalf, .target_edge = kEdge});
+  if (!(rebuilt.thickened_area > 0.0)) return std::nullopt;
+  return std::move(rebuilt.mesh);
+}
+
+}  // namespace
+
+MeshingResult mesh_solid(const TriMesh& surface, const MeshingOptions& options,
+                         const Monitor& monitor) {
+  MeshingResult result = filled(surface, options, monitor);
+  if (options.max_tets || result.report.envelope <= kMissed) return result;
+  const std::optional<TriMesh> thick = with_walls(surface);
+  if (!thick) return result;
+  MeshingResult other = filled(*thick, options, part_of(monitor, "thin parts", 0.95, 1.0));
+  other.report.envelope = envelope_error({other.mesh.points, other.mesh.facets}, surface);
+  if (!nearer_to_limits(other.report, result.report)) return result;
+  other.report.notes.emplace_back("parts too thin for elements became walls of 0.3 mm");
+  return other;
 }
 
 }  // namespace coxa::meshing

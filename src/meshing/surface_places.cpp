@@ -30,4 +30,19 @@ std::vector<Vec3> places_on(const TriMesh& surface, double spacing) {
   return places;
 }
 
+std::vector<Vec3> places_within(const TriMesh& surface, double spacing) {
+  std::vector<Vec3> places;
+  for (Index t = 0; t < surface.n_triangles(); ++t) {
+    const Vec3 a = surface.points.row(surface.triangles(t, 0)),
+               b = surface.points.row(surface.triangles(t, 1)),
+               c = surface.points.row(surface.triangles(t, 2));
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    const int parts = static_cast<int>(std::ceil(longest / spacing));
+    for (int i = 1; i < parts; ++i)
+      for (int j = 1; i + j < parts; ++j)
+        places.push_back(a + (b - a) * i / parts + (c - a) * j / parts);
+  }
+  return places;
+}
+
 }  // namespace coxa::meshing

@@ -11,4 +11,7 @@ namespace coxa::meshing {
 /// apart or nearer.
 std::vector<Vec3> places_on(const TriMesh& surface, double spacing);
 
+/// Places within the triangles that are longer than `spacing`, mm, about as far apart.
+std::vector<Vec3> places_within(const TriMesh& surface, double spacing);
+
 }  // namespace coxa::meshing

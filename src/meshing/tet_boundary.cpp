@@ -84,6 +84,15 @@ Triangles boundary_of(const TetGrid& grid) {
   return result;
 }
 
+TriMesh boundary_surface(const TetGrid& grid) {
+  TriMesh surface;
+  surface.points.resize(static_cast<Index>(grid.x.size()), 3);
+  for (std::size_t v = 0; v < grid.x.size(); ++v)
+    surface.points.row(static_cast<Index>(v)) = grid.x[v];
+  surface.triangles = boundary_of(grid);
+  return surface;
+}
+
 TetMesh to_tet_mesh(const TetGrid& grid) {
   std::vector<Index> number(grid.x.size(), -1);
   for (const Tet& t : grid.tets) {
