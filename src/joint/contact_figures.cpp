@@ -53,6 +53,25 @@ double pressure_percentile(const std::vector<collide::ContactSample>& samples, d
   return weighted_percentile(std::move(pressures), share);
 }
 
+ThinFigures thin_figures(const std::vector<collide::ContactSample>& touching,
+                         const collide::SurfaceContact& contact, const VecX& thickness) {
+  ThinFigures thin;
+  std::vector<collide::ContactSample> thick;
+  for (const collide::ContactSample& sample : touching) {
+    double here = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const auto vertex = static_cast<std::size_t>(contact.slave().triangles(sample.triangle, k));
+      here += sample.barycentric[k] * thickness[contact.slave().particle[vertex]];
+    }
+    if (here < kThinCartilage)
+      thin.force += sample.pressure * sample.area;
+    else
+      thick.push_back(sample);
+  }
+  thin.peak_pressure_p99 = pressure_percentile(thick, 0.99);
+  return thin;
+}
+
 double patch_peak(const std::vector<collide::ContactSample>& samples, double area) {
   const double radius = std::sqrt(area / kPi);
   double largest = 0.0;

@@ -1,6 +1,7 @@
 #include "frame_figures.h"
 
 #include <coxa/core/parallel.h>
+#include <coxa/geom/triangle_tree.h>
 #include <coxa/mesh/measures.h>
 #include <coxa/mesh/tet_quality.h>
 
@@ -198,11 +199,16 @@ void find_crushed(CrushFigures& crush, const TetMesh& mesh, const fem::ElasticFo
 SocketElements socket_elements(const JointModel& model) {
   const TetMesh& mesh = model.acetabular_cartilage;
   SocketElements elements{socket_clock(model), VecX(mesh.n_tets()),
-                          tet_volumes(mesh.points, mesh.tets)};
+                          tet_volumes(mesh.points, mesh.tets), VecX(mesh.n_vertices())};
   for (Index t = 0; t < mesh.n_tets(); ++t) {
     const Points corners = mesh.points(mesh.tets.row(t), Eigen::all);
     elements.hour[t] = elements.clock.hour(corners.colwise().mean().transpose());
   }
+  const TriangleTree bone(mesh.points, facets_with(mesh, FacetTag::bone_side));
+  parallel_for(mesh.n_vertices(), [&](Index i) {
+    elements.thickness[i] =
+        std::sqrt(bone.nearest(mesh.points.row(i).transpose()).squared_distance);
+  });
   return elements;
 }
 
@@ -267,6 +273,8 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
   const std::vector<collide::ContactSample> samples =
       update_contact_figures(frame, model, system, equilibrium, state, elements.clock);
   frame.contact.peak_pressure_patch = patch_peak(samples, kPatchArea);
+  frame.thin = thin_figures(samples_in_contact(system, state, samples), state.contact.cartilages(),
+                            elements.thickness);
   find_crushed(frame.crush, model.acetabular_cartilage, system.socket_elasticity(), state.x,
                "acetabular cartilage");
   find_crushed(frame.crush, model.femoral_cartilage, system.femur_elasticity(), state.x,

@@ -9,11 +9,12 @@
 
 namespace coxa::joint {
 
-/// The elements of the socket's cartilage on the clock face, at rest.
+/// The elements of the socket's cartilage on the clock face, and how thick it is, at rest.
 struct SocketElements {
   ClockFace clock;
-  VecX hour;    ///< of their middles
-  VecX volume;  ///< mm³
+  VecX hour;       ///< of their middles
+  VecX volume;     ///< mm³
+  VecX thickness;  ///< distance of its nodes from its bone side, mm
 };
 SocketElements socket_elements(const JointModel& model);
 
@@ -24,8 +25,8 @@ std::vector<collide::ContactSample> update_contact_figures(
     FrameResult& frame, const JointModel& model, const HipSystem& system, Equilibrium& equilibrium,
     const HipState& state, const ClockFace& clock);
 
-/// Fills all that a converged frame reports: those, the peak over a patch, crushed elements,
-/// sectors.
+/// Fills all that a converged frame reports: those, the peak over a patch, what thin edges
+/// bear, crushed elements, sectors.
 void update_figures(FrameResult& frame, const JointModel& model, const HipSystem& system,
                     Equilibrium& equilibrium, const HipState& state,
                     const SocketElements& elements);
@@ -37,6 +38,11 @@ void update_figures(FrameResult& frame, const JointModel& model, const HipSystem
 std::vector<collide::ContactSample> samples_in_contact(const HipSystem& system,
                                                        const HipState& state,
                                                        std::vector<collide::ContactSample> samples);
+
+/// What thin cartilage bears of the samples in contact.
+/// @param thickness  of the socket's nodes, mm
+ThinFigures thin_figures(const std::vector<collide::ContactSample>& touching,
+                         const collide::SurfaceContact& contact, const VecX& thickness);
 
 /// The value below which `share` of the weight lies; 0 without values.
 /// @param values  each with its weight

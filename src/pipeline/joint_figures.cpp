@@ -10,6 +10,8 @@ namespace {
 
 // share of the joint force on bare bone that no healthy hip has
 constexpr double kMuchOnBone = 0.1;
+// share of it on edges of cartilage beyond which they make the peaks
+constexpr double kMuchOnThin = 0.1;
 
 void add_limit(const std::string& name, const joint::BonyLimit& limit, Record& record) {
   record.figures[name + "_flexion_deg"] = degrees(limit.angles.flexion);
@@ -52,6 +54,27 @@ void warn_of_crushed_edges(const joint::JointResult& result, Record& record) {
                 std::lround(100.0 * worst->crush.least_volume_ratio), " % of its volume"));
 }
 
+/// One warning for all frames in which edges thinner than any image measures bear much.
+void warn_of_thin_edges(const joint::JointResult& result, Record& record) {
+  double share = 0.0, with = 0.0, without = 0.0;
+  for (const joint::FrameResult& frame : result.frames) {
+    const double all = frame.balance.contact_force.norm();
+    if (frame.status != joint::FrameStatus::converged || !(all > 0.0)) continue;
+    share = std::max(share, frame.thin.force / all);
+    with = std::max(with, frame.contact.peak_pressure_p99);
+    without = std::max(without, frame.thin.peak_pressure_p99);
+  }
+  record.figures["largest_share_on_thin_cartilage_percent"] = 100.0 * share;
+  record.figures["largest_peak_pressure_p99_thick_mpa"] = without;
+  if (share <= kMuchOnThin) return;
+  record.warnings.push_back(join_text(
+      "up to ", 100.0 * share, " % of the joint force rests on acetabular cartilage thinner than ",
+      joint::kThinCartilage,
+      " mm, which is an edge's shape rather than a measured thickness; the highest peak pressure "
+      "is ",
+      with, " MPa with it and ", without, " MPa without"));
+}
+
 }  // namespace
 
 void add_joint_figures(const joint::JointResult& result, Record& record) {
@@ -80,6 +103,7 @@ void add_joint_figures(const joint::JointResult& result, Record& record) {
     reaction_error = std::max(reaction_error, frame.balance.reaction_error);
   }
   warn_of_crushed_edges(result, record);
+  warn_of_thin_edges(result, record);
   record.figures["largest_peak_pressure_p99_mpa"] = peak;
   record.figures["largest_share_on_bare_bone_percent"] = 100.0 * bare;
   if (result.bare_bone == joint::BareBone::both)

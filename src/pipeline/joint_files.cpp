@@ -129,7 +129,8 @@ std::string header(const joint::JointResult& result) {
       "centre_of_pressure_z_mm,centre_of_pressure_hour,penetration_mm,contact_force_N,force_on_"
       "bare_bone_N,force_error_"
       "percent,"
-      "reaction_error,elastic_energy_Nmm,contact_energy_Nmm,work_Nmm,least_volume_ratio";
+      "reaction_error,elastic_energy_Nmm,contact_energy_Nmm,work_Nmm,least_volume_ratio,"
+      "force_on_thin_cartilage_N,peak_pressure_p99_thick_MPa";
   for (int h = 0; h < 12; ++h) text += join_text(",strain_", h == 0 ? 12 : h, "_oclock");
   for (const char* region : joint::kRegionNames) text += join_text(",strain_", region);
   if (result.has_labrum) text += ",labrum_clearance_mm";
@@ -153,7 +154,8 @@ std::string contact_cells(const joint::FrameResult& f, const joint::JointResult&
   text += cell(c.centre_hour) + cell(c.penetration) + cell(f.balance.contact_force.norm()) +
           cell(f.balance.force_on_bone.norm()) + cell(100.0 * f.balance.force_error) +
           cell(f.balance.reaction_error) + cell(f.balance.elastic_energy) +
-          cell(f.balance.contact_energy) + cell(f.balance.work) + cell(f.crush.least_volume_ratio);
+          cell(f.balance.contact_energy) + cell(f.balance.work) + cell(f.crush.least_volume_ratio) +
+          cell(f.thin.force) + cell(f.thin.peak_pressure_p99);
   for (const joint::SectorFigures& sector : f.sectors) text += cell(sector.strain);
   for (const joint::SectorFigures& region : f.regions) text += cell(region.strain);
   return text + optional_cells(f, result) + cell(f.residual) + cell(f.iterations) + cell(f.seconds);
@@ -161,7 +163,7 @@ std::string contact_cells(const joint::FrameResult& f, const joint::JointResult&
 
 /// Cells of a frame without a result: as many commas as `contact_cells` has.
 std::string no_contact_cells(const joint::JointResult& result) {
-  return std::string(19 + 12 + joint::kRegionNames.size() + n_optional_cells(result) + 3, ',');
+  return std::string(21 + 12 + joint::kRegionNames.size() + n_optional_cells(result) + 3, ',');
 }
 
 std::string quoted(std::string text) {

@@ -52,6 +52,16 @@ struct ContactFigures {
   double deepest_sample = 0.0;  ///< mm, largest overlap at a single sampling point
 };
 
+/// Thinner than this at rest cartilage is an edge no image has measured (a voxel of a hip's MRI is
+/// no smaller), and its pressures are those of its shape, mm.
+inline constexpr double kThinCartilage = 0.5;
+
+/// What the acetabular cartilage's thin edges make of one converged frame's contact.
+struct ThinFigures {
+  double force = 0.0;              ///< N, pressure summed over what is thinner than kThinCartilage
+  double peak_pressure_p99 = 0.0;  ///< MPa, 99th percentile by area of the rest
+};
+
 /// How near one converged frame comes to crushing an element.
 struct CrushFigures {
   double least_volume_ratio = 1.0;    ///< deformed over reference volume of the worst element
@@ -115,6 +125,7 @@ struct FrameResult {
   VecX labrum_pressure;        ///< MPa per node
   ContactFigures contact;
   BalanceFigures balance;
+  ThinFigures thin;
   CrushFigures crush;
   LabrumFigures labrum;
   VecX ligament_tension;                  ///< N, as the model's ligaments
