@@ -4,7 +4,11 @@
 #include <coxa/core/parallel.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
+
+#include "profile_correlation.h"
 
 namespace coxa::segment {
 namespace {
@@ -12,8 +16,6 @@ namespace {
 /// Standard deviation, as a share of the image's intensity range, below which a profile counts as
 /// flat: about twice the noise of a clinical image, so that noise alone correlates with nothing.
 constexpr double kFlatShare = 0.03;
-/// Share of a profile's weight that must lie in the image.
-constexpr double kSeenShare = 0.75;
 /// mm². Variance by which 0.8 mm voxels blur a profile: the references were learned at about that.
 constexpr double kTrainedVariance = 0.16;
 /// A step of this share of the intensity range over two samples counts as a full border.
@@ -51,62 +53,6 @@ VecX smoothed_profile(const VecX& profile, double sigma_samples) {
   return out;
 }
 
-/// A reference ready for correlation: weighted mean 0, weighted variance 1.
-struct Reference {
-  VecX weight;  ///< sums to 1
-  VecX value;
-  double slope = 0;  ///< at the border, share of the profile's range, in [-1, 1]
-  bool informative = false;
-};
-
-Reference make_reference(const VecX& profile, Index n_inside, double step, double window) {
-  Reference r;
-  const Index n = static_cast<Index>(profile.size());
-  r.weight.resize(n);
-  for (Index k = 0; k < n; ++k) {
-    const double t = (k - n_inside) * step / window;
-    r.weight[k] = std::exp(-0.5 * t * t);
-  }
-  r.weight /= r.weight.sum();
-  r.value = profile.array() - r.weight.dot(profile);
-  const double variance = r.weight.dot(r.value.cwiseAbs2());
-  const double extent = profile.maxCoeff() - profile.minCoeff();
-  r.informative = variance > 1e-12;
-  if (!r.informative) return r;
-  r.value /= std::sqrt(variance);
-  const Index before = std::max<Index>(0, n_inside - 1), after = std::min(n - 1, n_inside + 1);
-  r.slope = std::clamp((profile[after] - profile[before]) / extent, -1.0, 1.0);
-  return r;
-}
-
-/// Correlation of the reference with samples [first, first + n); NaN where too little of it is in
-/// the image.
-double correlation(const Reference& r, const VecX& samples, Index first, double flat) {
-  const Index n = static_cast<Index>(r.value.size());
-  double weight = 0.0, mean = 0.0, reference_mean = 0.0;
-  for (Index k = 0; k < n; ++k) {
-    const double I = samples[first + k];
-    if (std::isnan(I)) continue;
-    weight += r.weight[k];
-    mean += r.weight[k] * I;
-    reference_mean += r.weight[k] * r.value[k];
-  }
-  if (weight < kSeenShare) return kNaN;
-  mean /= weight;
-  reference_mean /= weight;
-  double cross = 0.0, variance = 0.0, reference_variance = 0.0;
-  for (Index k = 0; k < n; ++k) {
-    const double I = samples[first + k];
-    if (std::isnan(I)) continue;
-    const double a = I - mean, b = r.value[k] - reference_mean;
-    cross += r.weight[k] * a * b;
-    variance += r.weight[k] * a * a;
-    reference_variance += r.weight[k] * b * b;
-  }
-  if (reference_variance < 1e-12) return 0.0;
-  return cross / std::sqrt((variance + weight * flat * flat) * reference_variance);
-}
-
 /// Samples along the normal from -n_before to +n_after steps.
 VecX sample_line(const Volume& volume, const Vec3& start, const Vec3& normal, double step,
                  Index n_before, Index n_after) {
@@ -118,11 +64,12 @@ VecX sample_line(const Volume& volume, const Vec3& start, const Vec3& normal, do
 }
 
 /// Scores of one reference at all shifts of vertex v; the better of these and those there are.
-void update_with(const Reference& r, const VecX& line, double intensity_range, Index n_inside,
-                 const ProfileSearch& search, Index v, ProfileScores& scores) {
+void update_with(const ProfileReference& r, const VecX& line, double intensity_range,
+                 Index n_inside, const ProfileSearch& search, Index v, ProfileScores& scores) {
   const Index R = scores.n_each_way, last = static_cast<Index>(line.size()) - 1;
+  const VecX at_shift = correlations(r, line, kFlatShare * intensity_range);
   for (Index s = 0; s <= 2 * R; ++s) {
-    const double c = correlation(r, line, s, kFlatShare * intensity_range);
+    const double c = at_shift[s];
     const Index centre = s + n_inside;
     if (std::isnan(c) || std::isnan(line[centre])) continue;
     const double step = (line[std::min(last, centre + 1)] - line[std::max<Index>(0, centre - 1)]) /
@@ -144,6 +91,33 @@ double parabola_offset(double before, double middle, double after) {
   return std::clamp(0.5 * (before - after) / bend, -0.5, 0.5);
 }
 
+/// Weighted mean of four rows.
+Eigen::RowVectorXd whole_mean(const ScoreTable& scores, const std::array<Index, 4>& rows,
+                              const VecX& weight) {
+  const auto [a, b, c, d] = rows;
+  const double total = weight[a] + weight[b] + weight[c] + weight[d];
+  return (weight[a] * scores.row(a) + weight[b] * scores.row(b) + weight[c] * scores.row(c) +
+          weight[d] * scores.row(d)) /
+         total;
+}
+
+/// The same of what is there of them; missing where the first row is.
+Eigen::RowVectorXd mean_of_seen(const ScoreTable& scores, const std::array<Index, 4>& rows,
+                                const VecX& weight) {
+  Eigen::RowVectorXd mean = scores.row(rows[0]);
+  for (Eigen::Index s = 0; s < mean.size(); ++s) {
+    if (std::isnan(mean[s])) continue;
+    double sum = 0.0, total = 0.0;
+    for (const Index u : rows) {
+      if (std::isnan(scores(u, s))) continue;
+      sum += weight[u] * scores(u, s);
+      total += weight[u];
+    }
+    mean[s] = sum / total;
+  }
+  return mean;
+}
+
 }  // namespace
 
 ProfileScores score_profiles(const PreparedImage& image, const Points& positions,
@@ -155,7 +129,7 @@ ProfileScores score_profiles(const PreparedImage& image, const Points& positions
   scores.step = reference.step;
   scores.n_each_way = static_cast<Index>(std::ceil(search.range / reference.step));
   const Index R = scores.n_each_way, V = static_cast<Index>(positions.rows());
-  scores.score = MatX::Constant(V, 2 * R + 1, kNaN);
+  scores.score = ScoreTable::Constant(V, 2 * R + 1, kNaN);
   scores.correlation = scores.score;
 
   parallel_for(V, [&](Index v) {
@@ -164,8 +138,8 @@ ProfileScores score_profiles(const PreparedImage& image, const Points& positions
                                   reference.n_inside + R, n_outside + R);
     const double sigma = blur_sigma(image.volume, normal, search.image_sigma) / scores.step;
     const auto score_one = [&](const VecX& profile) {
-      const Reference r = make_reference(smoothed_profile(profile, sigma), reference.n_inside,
-                                         scores.step, search.window);
+      const ProfileReference r = make_reference(smoothed_profile(profile, sigma),
+                                                reference.n_inside, scores.step, search.window);
       if (r.informative)
         update_with(r, line, image.intensity_range, reference.n_inside, search, v, scores);
     };
@@ -196,20 +170,22 @@ void update_combined(ProfileScores& scores, const ProfileScores& other) {
 
 void update_smoothed(ProfileScores& scores, const Triangles& neighbours, const VecX& reliability,
                      int passes) {
+  constexpr double kLeastWeight = 1e-3;
+  const VecX weight = reliability.array() + kLeastWeight;
+  const auto V = static_cast<Index>(scores.score.rows());
+  std::vector<char> whole(static_cast<std::size_t>(V));  // no score of the vertex is missing
+  parallel_for(
+      V, [&](Index v) { whole[static_cast<std::size_t>(v)] = !scores.score.row(v).hasNaN(); });
+  ScoreTable previous(scores.score.rows(), scores.score.cols());
   for (int pass = 0; pass < passes; ++pass) {
-    const MatX previous = scores.score;
-    parallel_for(previous.rows(), [&](Index v) {
-      const Index around[4] = {v, neighbours(v, 0), neighbours(v, 1), neighbours(v, 2)};
-      for (Index s = 0; s < previous.cols(); ++s) {
-        double sum = 0.0, total = 0.0;
-        for (const Index u : around) {
-          if (std::isnan(previous(u, s))) continue;
-          const double weight = 1e-3 + reliability[u];
-          sum += weight * previous(u, s);
-          total += weight;
-        }
-        if (!std::isnan(previous(v, s)) && total > 0.0) scores.score(v, s) = sum / total;
-      }
+    previous.swap(scores.score);
+    parallel_for(V, [&](Index v) {
+      const std::array<Index, 4> around{v, neighbours(v, 0), neighbours(v, 1), neighbours(v, 2)};
+      const bool all = std::all_of(around.begin(), around.end(), [&](Index u) {
+        return whole[static_cast<std::size_t>(u)] != 0;
+      });
+      scores.score.row(v) =
+          all ? whole_mean(previous, around, weight) : mean_of_seen(previous, around, weight);
     });
   }
 }

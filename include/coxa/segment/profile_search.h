@@ -30,13 +30,16 @@ struct ProfileSearch {
   double image_sigma = 0.0;      ///< mm, smoothing of the image; the references are smoothed alike
 };
 
+/// A row per vertex, in one piece of memory.
+using ScoreTable = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Scores of moving each vertex along its normal: row v, column s is the shift (s - n_each_way) *
 /// step.
 struct ProfileScores {
   double step = 0.5;  ///< mm
   Index n_each_way = 0;
-  MatX score;        ///< V×(2 n_each_way + 1); NaN where the profile leaves the image
-  MatX correlation;  ///< same shape: normalised cross-correlation alone, in [-1, 1]
+  ScoreTable score;        ///< V×(2 n_each_way + 1); NaN where the profile leaves the image
+  ScoreTable correlation;  ///< same shape: normalised cross-correlation alone, in [-1, 1]
 };
 
 /// Row i of the reference belongs to position i.
