@@ -2,7 +2,7 @@
 
 #include <coxa/core/error.h>
 #include <coxa/segment/placement.h>
-#include <coxa/segment/separate_bodies.h>
+#include <coxa/segment/share_tissue.h>
 
 #include <algorithm>
 #include <cmath>
@@ -71,19 +71,24 @@ std::map<std::string, double> landmark_distances(const Hip& hip, const shape::At
   return distances;
 }
 
-/// No muscle is in another, nor in a bone or cartilage.
-void separate_muscles(const Hip& hip, std::vector<Surface>& surfaces,
-                      std::vector<std::string>& warnings, const Monitor& monitor) {
+/// Muscles take the tissue that the image shows; none is in another, nor in a bone or cartilage.
+void finish_muscles(const Hip& hip, std::vector<Surface>& surfaces,
+                    std::vector<std::string>& warnings, const Monitor& monitor) {
+  if (!hip.has_muscles()) return;
   std::vector<Separable> muscles;
   std::vector<const TriMesh*> firm;
+  std::vector<TriMesh> bones;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const Body& body = hip.bodies()[s];
-    if (hip.is_muscle(s))
+    if (hip.is_muscle(s)) {
       muscles.push_back({body.model->name, &surfaces[s], quality_of(body).correlation});
-    else
-      firm.push_back(&surfaces[s].mesh);
+      continue;
+    }
+    firm.push_back(&surfaces[s].mesh);
+    if (hip.is_bone(s)) bones.push_back(surfaces[s].mesh);
   }
-  for (std::string& text : update_separated(std::move(muscles), firm, monitor))
+  for (std::string& text :
+       update_to_tissue(std::move(muscles), firm, bones, hip.images().front(), monitor))
     warnings.push_back(std::move(text));
 }
 
@@ -93,7 +98,7 @@ SegmentResult make_result(const Hip& hip, Side side, const SegmentOptions& optio
   double bone_confidence = 0.0, n_bones = 0.0;
   std::string muscles_cut;
   std::vector<Surface> surfaces = hip.surfaces(result.warnings);
-  separate_muscles(hip, surfaces, result.warnings, monitor);
+  finish_muscles(hip, surfaces, result.warnings, monitor);
   for (std::size_t s = 0; s < hip.bodies().size(); ++s) {
     const Body& body = hip.bodies()[s];
     const StructureQuality quality = quality_of(body);

@@ -57,7 +57,8 @@ std::map<std::string, VecX> carried_fields(const Surface& from, const TriMesh& t
 }
 
 /// @returns the share that is left; 0 where that is too little and nothing was taken
-double carve(Surface& surface, const std::vector<const TriMesh*>& obstacles) {
+double carve(const Separable& body, const std::vector<const TriMesh*>& obstacles) {
+  Surface& surface = *body.surface;
   const double before = volume(surface.mesh);
   const double grid = std::clamp(kGridShare * std::cbrt(before), kFinestGrid, kCoarsestGrid);
   TriMesh rest;
@@ -67,14 +68,15 @@ double carve(Surface& surface, const std::vector<const TriMesh*>& obstacles) {
                           .spacing = grid,
                           .edge = kEdge * grid,
                           .least_kept = kLeastKept,
-                          .least_whole = 0.0});
+                          .least_whole = 0.0,
+                          .anew = body.uneven});
   } catch (const Error& error) {
     if (error.code() != ErrorCode::below_quality) throw;
     return 0.0;
   }
   const double kept = volume(rest) / before;
   update_parted({{&rest}}, obstacles);
-  surface.fields = carried_fields(surface, rest);
+  surface.fields = carried_fields(body.fields_of ? *body.fields_of : surface, rest);
   surface.mesh = std::move(rest);
   return kept;
 }
@@ -92,7 +94,7 @@ std::vector<std::string> update_separated(std::vector<Separable> soft,
   for (const Separable& body : soft) {
     monitor.check_cancelled();
     const std::vector<const TriMesh*> met = near(body.surface->mesh, before);
-    const double kept = met.empty() ? 1.0 : carve(*body.surface, met);
+    const double kept = met.empty() && !body.uneven ? 1.0 : carve(body, met);
     if (kept < kDoubtful)
       doubtful.push_back(join_text("low confidence: of the ", body.name, " as found only ",
                                    std::lround(100.0 * kept),

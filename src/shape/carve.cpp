@@ -120,7 +120,7 @@ TriMesh carved(const TriMesh& mesh, const std::vector<const TriMesh*>& obstacles
   bool any = false;
   for (const TriMesh* obstacle : obstacles)
     any = lower(*obstacle, options.gap, grid, values) || any;
-  if (!any) return mesh;
+  if (!any && !options.anew) return mesh;
   const bool left = std::any_of(values.begin(), values.end(), [](float v) { return v > 0.0F; });
   if (!left) fail(ErrorCode::below_quality, "nothing of it lies out of everything else");
   const TriMesh raw =

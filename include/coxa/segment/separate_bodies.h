@@ -13,6 +13,9 @@ struct Separable {
   std::string name;
   Surface* surface = nullptr;
   double confirmed = 0.0;
+  /// Its triangles are uneven: it gets new ones in any case. The fields are those of `fields_of`.
+  bool uneven = false;
+  const Surface* fields_of = nullptr;  ///< null: its own
 };
 
 /// Takes overlaps of soft bodies away: where two overlap, what the image confirms less gives way,

@@ -13,6 +13,7 @@ struct CarveOptions {
   double least_kept = 0.7;    ///< share of the volume, in (0, 1], that must be left
   double least_whole = 0.95;  ///< share of that, in [0, 1], that one piece must be; others are
                               ///< lost, unless it is 0: then all stay
+  bool anew = false;          ///< new triangles even where nothing is in the way
 };
 
 /// What a closed surface encloses less what lies in the obstacles or nearer to them than the gap.
@@ -20,7 +21,7 @@ struct CarveOptions {
 /// The distances of all are compared on a grid, and the zero level of their least is remeshed: the
 /// outcome cannot fold, however the surfaces cross, and clears flat triangles as well as vertices.
 /// @param obstacles closed, outward
-/// @returns closed, outward; the surface as it is where nothing of it is in the way
+/// @returns closed, outward; the surface as it is where nothing of it is in the way, unless `anew`
 /// @throws Error below_quality if less than `least_kept` of the volume is left, or that is in
 /// pieces
 TriMesh carved(const TriMesh& mesh, const std::vector<const TriMesh*>& obstacles,
