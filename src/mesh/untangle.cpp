@@ -4,6 +4,7 @@
 
 #include <coxa/core/error.h>
 #include <coxa/geom/triangle_tree.h>
+#include <coxa/mesh/surface_distance.h>
 #include <coxa/mesh/topology.h>
 #include <coxa/mesh/validate.h>
 
@@ -51,16 +52,13 @@ TriMesh cut_out(const TriMesh& mesh, const std::vector<bool>& marked) {
   return sub_mesh(rest, solid).mesh;
 }
 
-// pieces that were cut off count as what was cut out does
+// by the vertices before and samples of both; pieces that were cut off count as what was cut out
 double largest_move(const TriMesh& before, const TriMesh& after) {
-  const TriangleTree old_surface(before.points, before.triangles),
-      new_surface(after.points, after.triangles);
+  const TriangleTree new_surface(after.points, after.triangles);
   double squared = 0.0;
   for (const auto& p : before.points.rowwise())
     squared = std::max(squared, new_surface.nearest(p.transpose()).squared_distance);
-  for (Index t = 0; t < after.n_triangles(); ++t)
-    squared = std::max(squared, old_surface.nearest(centroid(after, t)).squared_distance);
-  return std::sqrt(squared);
+  return std::max(std::sqrt(squared), surface_distance(after, before).hd);
 }
 
 // one attempt; nothing where borders touch, holes cannot be filled or something still meets

@@ -20,8 +20,8 @@ namespace {
 // grid and edge length of a surface made anew, mm: a fraction of cartilage's thickness
 constexpr double kRebuildSpacing = 0.3, kRebuildEdge = 0.7;
 
-// where more than this of a surface would be left out, mm, its thin parts become walls of twice the
-// thickening on a finer grid, which must see them
+// where more than this of a surface would be left out or moved, mm, it is made anew, and its thin
+// parts become walls of twice the thickening on a finer grid, which must see them
 constexpr double kLargestLoss = 0.3, kThickening = 0.15, kThinSpacing = 0.2, kThinEdge = 0.5;
 
 // a surface that must move farther than this, mm, about as thick as cartilage, is not evened out
@@ -83,38 +83,63 @@ TriMesh made_anew(const TriMesh& surface, const std::string& why,
   return rebuilt.mesh;
 }
 
-/// Places where a closed surface cuts itself are evened out first, which keeps its triangles; the
-/// rest is repaired.
+/// Repaired, or refused for a reason.
+struct Attempt {
+  std::optional<Repaired> repaired;
+  ErrorCode code = ErrorCode::bad_mesh;
+  std::string refusal;
+};
+
+Attempt attempt(const TriMesh& surface) {
+  try {
+    return {repair(surface), ErrorCode::bad_mesh, {}};
+  } catch (const Error& refused) {
+    return {std::nullopt, refused.code(), refused.what()};
+  }
+}
+
+/// How far a repair moved the surface, or what it dropped reached, mm.
+double moved_by(const Repaired& repaired) {
+  return std::max(repaired.report.largest_move, repaired.report.dropped_reach);
+}
+
+/// Evens out the places where a closed surface cuts itself, which keeps its triangles, unless that
+/// would move it by more than `allowed` mm.
+/// @returns whether it was
+bool update_evened(TriMesh& surface, double allowed, std::vector<std::string>& changes) {
+  TriMesh even = surface;
+  if (!update_unfolded(even)) return false;
+  const double moved = (even.points - surface.points).rowwise().norm().maxCoeff();
+  if (moved > allowed) return false;
+  changes.push_back(join_text("evened out where it cut itself, by at most ", moved, " mm"));
+  surface = std::move(even);
+  return true;
+}
+
+/// A surface that cuts itself is mended by whatever moves it least; the rest is repaired.
 TriMesh made_valid(TriMesh surface, const ValidityReport& before, const std::string& name,
                    std::vector<std::string>& changes) {
+  Attempt tried = attempt(surface);
   if (before.has(FaultKind::self_intersection) && manifold_fault(surface).empty()) {
-    const Points points = surface.points;
-    const bool unfolded = update_unfolded(surface);
-    const double moved = (surface.points - points).rowwise().norm().maxCoeff();
-    if (unfolded && moved <= kLargestEvening) {
-      changes.push_back(join_text("evened out where it cut itself, by at most ", moved, " mm"));
-    } else {
-      surface.points = points;
-    }
+    const double allowed =
+        tried.repaired ? std::min(moved_by(*tried.repaired), kLargestEvening) : kLargestEvening;
+    if (update_evened(surface, allowed, changes)) tried = attempt(surface);
   }
-  std::optional<Repaired> repaired;
-  std::string refusal;
-  try {
-    repaired = repair(surface);
-  } catch (const Error& refused) {
-    if (has_second_body(surface)) fail(refused.code(), name, ": ", refused.what());
-    refusal = refused.what();
-  }
+  std::optional<Repaired>& repaired = tried.repaired;
+  if (!repaired && has_second_body(surface)) fail(tried.code, name, ": ", tried.refusal);
   if (repaired && repaired->report.dropped_reach > kLargestLoss) {
     // parts without volume that reach out are lost by a repair
-    refusal = join_text("parts without volume reach ", repaired->report.dropped_reach, " mm out");
+    tried.refusal =
+        join_text("parts without volume reach ", repaired->report.dropped_reach, " mm out");
     surface = with_loose_triangles(repaired->mesh, surface);
+  } else if (repaired && repaired->report.largest_move > kLargestLoss) {
+    tried.refusal = join_text("a repair would move it by ", repaired->report.largest_move, " mm");
   }
-  if (!refusal.empty()) {
+  if (!tried.refusal.empty()) {
     try {
-      return made_anew(surface, refusal, changes);
+      return made_anew(surface, tried.refusal, changes);
     } catch (const Error& error) {
-      if (!repaired) fail(error.code(), name, ": ", refusal, "; ", error.what());
+      if (!repaired) fail(error.code(), name, ": ", tried.refusal, "; ", error.what());
     }
   }
   for (const std::string& line : repaired->report.lines()) changes.push_back(line);

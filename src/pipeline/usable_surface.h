@@ -8,8 +8,8 @@
 
 namespace coxa::pipeline {
 
-/// A surface made valid: as it is where it is valid; otherwise evened out, repaired or made anew,
-/// with what was changed as warnings of the record.
+/// A surface made valid: as it is where it is valid; otherwise repaired or evened out, whichever
+/// moves it less, or made anew, with what was changed as warnings of the record.
 /// @throws Error bad_mesh naming the place if it cannot be used
 TriMesh usable_surface(const TriMesh& surface, const std::string& name, Record& record,
                        const Monitor& monitor);
