@@ -25,8 +25,16 @@ double brightness_at(const Vec3& p) {
   return r < kRadius + 1.5 ? 30.0 : 190.0;
 }
 
+// A socket about the ball, with cartilage like the ball's and a dark film between the two.
+constexpr double kFilm = 0.35, kSocket = kRadius + 2.0 * kThickness + kFilm;
+
+double brightness_of_joint(const Vec3& p) {
+  const double r = p.norm();
+  return brightness_at(r < 0.5 * (kRadius + kSocket) ? p : (kRadius + kSocket - r) / r * p);
+}
+
 /// Every voxel the mean of 3×3×3 points in it.
-PreparedImage simulated_image() {
+PreparedImage simulated_image(double (*brightness)(const Vec3&) = brightness_at) {
   PreparedImage image;
   Volume& volume = image.volume;
   volume.spacing = Vec3::Constant(0.8);
@@ -39,7 +47,7 @@ PreparedImage simulated_image() {
         double sum = 0.0;
         for (int s = 0; s < 27; ++s) {
           const Vec3 part(s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1);
-          sum += brightness_at(volume.position(Vec3(i, j, k) + part / 3.0));
+          sum += brightness(volume.position(Vec3(i, j, k) + part / 3.0));
         }
         volume.values[static_cast<std::size_t>(volume.offset(i, j, k))] =
             static_cast<float>(sum / 27.0);
@@ -94,6 +102,16 @@ TriMesh cap_layer(double radius, double cap, double thickness) {
   return layer;
 }
 
+/// The mesh with every distance from the origin taken from a sum: what was outside is inside.
+TriMesh turned_in(TriMesh mesh, double sum_of_radii) {
+  for (Index v = 0; v < mesh.n_vertices(); ++v) {
+    const Vec3 p = mesh.points.row(v);
+    mesh.points.row(v) = (sum_of_radii - p.norm()) / p.norm() * p;
+  }
+  mesh.triangles.col(1).swap(mesh.triangles.col(2));
+  return mesh;
+}
+
 struct Found {
   TriMesh layer, host;
   double separation = 0.0;
@@ -143,6 +161,25 @@ TEST(LayerExtent, TakesRimThicknessAndBoneFromTheImage) {
     }
     EXPECT_NEAR(beneath / count, kRadius, 0.2);
   }
+}
+
+TEST(LayerExtent, LeavesAFilmBetweenLayersThatTheImageDoesNotPart) {
+  const PreparedImage image = simulated_image(brightness_of_joint);
+  TriMesh ball = test::icosphere(3, kRadius), cap = cap_layer(kRadius, kCap, 1.5);
+  TriMesh socket = turned_in(ball, kRadius + kSocket), lining = turned_in(cap, kRadius + kSocket);
+  const Index n = cap.n_triangles() / 2;
+  std::vector<ExtentLayer> layers{{&cap, &ball, n}, {&lining, &socket, n}};
+  for (const FoundExtent& f :
+       update_extents(layers, std::vector<PreparedImage>{image}, std::vector{1.0}))
+    ASSERT_TRUE(f.changed()) << f.separation;
+  const Index sheet = 1 + kRings * kAround;
+  double between = 0.0, count = 0.0;
+  for (Index v = 0; v < 1 + kAround * (kRings / 2); ++v) {
+    between += lining.points.row(sheet + v).norm() - cap.points.row(sheet + v).norm();
+    count += 1.0;
+  }
+  // without the film they would touch; the bones beneath are found to a tenth of a millimetre each
+  EXPECT_NEAR(between / count, kFilm, 0.2);
 }
 
 TEST(LayerExtent, LeavesTheLayerWhereTheImageTellsNothing) {
