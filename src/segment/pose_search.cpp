@@ -2,12 +2,11 @@
 
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
-#include <coxa/segment/body.h>
-#include <coxa/segment/evolve.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "pose_fit.h"
 #include "pose_score.h"
 
 namespace coxa::segment {
@@ -21,12 +20,16 @@ constexpr double kVoxelShare = 0.7;
 /// Vertices per bone that are compared at each place: enough to tell a hip, few enough to try a
 /// hundred thousand; and at the places that are left.
 constexpr Index kProbes = 100, kManyProbes = 300;
-/// Places that are improved, of them those to which the shape models are fitted, and how far apart
-/// they are, mm. On simulated images the hip is among the first 30 of the grid.
-constexpr std::size_t kImproved = 80, kFitted = 4;
+/// Places that are improved, of them those to which the shape models are fitted coarsely, then
+/// finely, and how far apart they are, mm. On simulated images the hip is among the first 30 of the
+/// grid, 6 of the improved and 3 of the coarsely fitted.
+constexpr std::size_t kImproved = 80, kFitted = 8, kFinelyFitted = 4;
 constexpr double kApart = 18.0;
-/// mm. How far off a place of the grid, and the borders there, may be.
-constexpr double kRefinedRange = 12.0;
+/// How far off a place of the grid is, and, once fitted, the bones. The finer fit tells a hip from
+/// what looks like one from afar: at the right place the correlation stays as the image gets
+/// sharper.
+constexpr PlaceFit kCoarseFit{.range = 12.0, .sigma = kSmoothing, .window = 5.0};
+constexpr PlaceFit kFineFit{.range = 6.0, .sigma = 1.5, .window = 2.5};
 /// rad. Patients lie on the table within about this of the atlas' orientation.
 constexpr double kTurn = 0.26;
 /// mm. So far inside the image lies the joint's centre: an image that cuts the head shows no joint,
@@ -63,13 +66,6 @@ std::vector<Candidate> all_candidates(const Volume& volume) {
         for (const Mat3& R : turns) candidates.push_back({{1.0, {R, p}}, 0, -kInfinity});
       }
   return candidates;
-}
-
-/// What a size far from the atlas' mean costs: adults' hips differ by 7 %, and half the evidence of
-/// a right place (0.2) buys three standard deviations. Small bones fit anywhere.
-double size_cost(double scale) {
-  constexpr double kSpread = 0.07, kCost = 0.01;
-  return kCost * std::pow(std::log(scale) / kSpread, 2);
 }
 
 void update_score(Candidate& candidate, const PoseScore& score, const Volume& volume) {
@@ -128,56 +124,36 @@ Candidate improved(Candidate best, const PoseScore& score, const Volume& volume)
   return best;
 }
 
-/// Bodies at the candidate's pose, fitted to the image.
-std::vector<Body> refined(const Candidate& candidate,
-                          const std::vector<const shape::StructureModel*>& bones,
-                          const std::string& contrast, PreparedImage image,
-                          const SegmentOptions& options) {
-  std::vector<Body> bodies;
-  for (const shape::StructureModel* bone : bones) {
-    Body body;
-    body.model = bone;
-    body.points = posed(bone->hierarchy.levels.back().points, candidate.pose);
-    body.fit = {body.points, candidate.pose, VecX::Zero(bone->shape.deviations.size()), 0.0};
-    bodies.push_back(std::move(body));
+/// The places, each fitted from where it is; best first.
+std::vector<PlacedBones> best_fitted(std::vector<PlacedBones> places, const PreparedImage& image,
+                                     const PlaceFit& fit, const SegmentOptions& options,
+                                     const Monitor& monitor) {
+  for (PlacedBones& place : places) {
+    monitor.check_cancelled();
+    update_placed(place, image, fit, options);
   }
-  image.contrast = contrast;
-  const Resolution resolution{.coarsening = 3,
-                              .range = kRefinedRange,
-                              .image_sigma = kSmoothing,
-                              .window = 5.0,
-                              .score_smoothing = 12,
-                              .model_noise = 3.0,
-                              .fit_only = true};
-  const std::vector<Obstacles> none(bodies.size());
-  const std::vector<TriMesh> no_host(bodies.size());
-  SegmentOptions few = options;
-  few.iterations = std::min(options.iterations, 8);
-  update_bodies(bodies, {{&image, 1}, none, no_host}, resolution, few, {});
-  return bodies;
+  std::stable_sort(places.begin(), places.end(),
+                   [](const PlacedBones& a, const PlacedBones& b) { return a.score > b.score; });
+  return places;
 }
 
-double fit_score(const std::vector<Body>& bodies) {
-  double sum = 0.0, weight = 0.0, all = 0.0, cost = 0.0;
-  for (const Body& body : bodies) {
-    cost += size_cost(body.fit.pose.scale) / static_cast<double>(bodies.size());
-    sum += body.match.here.sum();
-    weight += body.match.seen.sum();
-    all += static_cast<double>(body.match.seen.size());
+/// The first of the places, and how far it is above the others.
+FoundPose found_pose(const std::vector<PlacedBones>& places) {
+  const PlacedBones& best = places.front();
+  FoundPose found{{}, joint_centre(best), best.contrast, best.score, best.score + 1.0};
+  for (const Body& body : best.bodies) found.placed.push_back(body.fit.points);
+  for (const PlacedBones& other : places) {
+    if ((joint_centre(other) - found.centre).norm() <= kApart) continue;
+    found.margin = best.score - other.score;
+    break;
   }
-  return sum / std::max(weight, kShareInView * all) - cost;
-}
-
-Vec3 centre_of(const std::vector<Body>& bodies) {
-  Vec3 sum = Vec3::Zero();
-  for (const Body& body : bodies) sum += body.fit.pose.X.p;
-  return sum / static_cast<double>(bodies.size());
+  return found;
 }
 
 /// A start that another place rivals, or that fits little, is none: segmentation from a wrong place
 /// can look sure of itself.
 void check_found(const FoundPose& found) {
-  constexpr double kLeastScore = 0.25, kLeastMargin = 0.05;
+  constexpr double kLeastScore = 0.18, kLeastMargin = 0.05;
   const char* const advice =
       "; give at least six landmarks (--landmarks), check the side and that the hip is in the "
       "image";
@@ -218,27 +194,16 @@ FoundPose find_pose(const std::vector<const shape::StructureModel*>& bones,
   update_all([&](Candidate& c) { c = improved(c, many, volume); });
   candidates = best_apart(std::move(candidates), kFitted);
 
-  FoundPose found;
-  found.score = -kInfinity;
-  std::vector<std::pair<Vec3, double>> results;
+  std::vector<PlacedBones> places;
   for (const Candidate& candidate : candidates) {
-    monitor.check_cancelled();
     const std::string& contrast = few.contrasts()[static_cast<std::size_t>(candidate.contrast)];
-    const std::vector<Body> bodies = refined(candidate, bones, contrast, image, options);
-    const double score = fit_score(bodies);
-    results.emplace_back(centre_of(bodies), score);
-    if (score <= found.score) continue;
-    found.score = score;
-    found.centre = results.back().first;
-    found.contrast = contrast;
-    found.placed.clear();
-    for (const Body& body : bodies) found.placed.push_back(body.fit.points);
+    places.push_back(placed_bones(bones, candidate.pose, contrast));
   }
-  double rival = -1.0;
-  for (const auto& [place, score] : results) {
-    if ((place - found.centre).norm() > kApart) rival = std::max(rival, score);
-  }
-  found.margin = found.score - rival;
+  places = best_fitted(std::move(places), image, kCoarseFit, options, monitor);
+  places.resize(std::min(places.size(), kFinelyFitted));
+  image.volume = smoothed(volume, kFineFit.sigma);
+  places = best_fitted(std::move(places), image, kFineFit, options, monitor);
+  const FoundPose found = found_pose(places);
   check_found(found);
   return found;
 }
