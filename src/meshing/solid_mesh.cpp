@@ -149,9 +149,11 @@ FeatureCurves ridges_missed(const TriMesh& surface, const MeshingResult& made,
   // mm, of the surface: asked for, and where the number of elements is given and cubes cannot get
   // finer
   constexpr double kGivenNumber = 0.15;
-  constexpr double kShortest = 3.0;  // of the smallest cubes
-  const bool met = made.report.envelope <= (options.max_tets ? kGivenNumber : kMissed);
-  return met ? FeatureCurves{} : feature_curves(surface, kShortest * cubes.smallest);
+  constexpr double kShortest = 3.0;         // of the smallest cubes
+  constexpr std::size_t kMostCurves = 500;  // more of them are roughness, and take minutes
+  if (made.report.envelope <= (options.max_tets ? kGivenNumber : kMissed)) return {};
+  FeatureCurves found = feature_curves(surface, kShortest * cubes.smallest);
+  return found.curves.size() <= kMostCurves ? found : FeatureCurves{};
 }
 
 // finer cubes where the surface was missed, and where they are too many, coarser ones where it is
