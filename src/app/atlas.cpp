@@ -17,8 +17,9 @@ void add_build(CLI::App& verb, Context& context) {
       ->check(CLI::ExistingDirectory);
   build
       ->add_option("--add", request->examples.own,
-                   "folder of a hip you segmented: femur.ply, hip_bone.ply, …")
-      ->check(CLI::ExistingDirectory);
+                   "a hip you segmented, left or right in its name: folder of femur.ply, "
+                   "hip_bone.ply, …, or label map with names")
+      ->check(CLI::ExistingPath);
   build->add_option("--exclude", request->examples.exclude,
                     "subject to leave out, both sides, for example m2");
   build->add_option("--exclude-structure", request->examples.exclude_structures,

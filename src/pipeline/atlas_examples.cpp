@@ -11,6 +11,7 @@
 
 #include "label_map_bones.h"
 #include "muscle_examples.h"
+#include "own_labels.h"
 
 namespace coxa::pipeline {
 namespace fs = std::filesystem;
@@ -98,6 +99,26 @@ std::vector<ScannedHip> scan_label_maps(const fs::path& folder) {
   return hips;
 }
 
+/// A hip that a user segmented: a folder of surfaces, or a label map in a folder of its own.
+ScannedHip read_own(const fs::path& path) {
+  const bool map = !fs::is_directory(path);
+  const fs::path folder = map ? fs::absolute(path).parent_path() : path;
+  const std::string name = folder.filename().string();
+  const auto is = [&](const char* side) {
+    return (name + path.filename().string()).find(side) != std::string::npos;
+  };
+  require(is("left") != is("right"), "which side is ", path.string(),
+          "? Its name or its folder's must have \"left\" or \"right\" in it");
+  const Side side = is("left") ? Side::left : Side::right;
+  if (!map) {
+    ScannedHip hip = read_hip("own", name, folder, side);
+    require(!hip.surfaces.empty(), folder.string(), " holds no femur.ply, hip_bone.ply, …");
+    return hip;
+  }
+  OwnLabels own = read_own_labels(path);
+  return {"own", name, side, std::move(own.surfaces), std::move(own.trust), {}};
+}
+
 bool excluded(const ScannedHip& hip, const AtlasExampleOptions& options) {
   return std::find(options.exclude.begin(), options.exclude.end(), hip.subject) !=
          options.exclude.end();
@@ -181,11 +202,9 @@ std::vector<shape::HipExample> load_atlas_examples(const fs::path& data,
     fail(ErrorCode::bad_file, data.string(),
          " holds none of libhip, visible_human, labels/pelvic_ref");
   }
-  for (const fs::path& folder : options.own) {
-    const bool left = folder.filename().string().find("left") != std::string::npos;
-    hips.push_back(
-        read_hip("own", folder.filename().string(), folder, left ? Side::left : Side::right));
-    require(!hips.back().surfaces.empty(), folder.string(), " holds no femur.ply, hip_bone.ply, …");
+  for (const fs::path& path : options.own) {
+    hips.push_back(read_own(path));
+    monitor.check_cancelled();
   }
   check_exclusions(hips, options);
   std::vector<shape::HipExample> examples;

@@ -46,6 +46,8 @@ Volume mask_of(const Volume& labels, float label, Side side, double middle) {
   return mask;
 }
 
+}  // namespace
+
 TriMesh largest_piece(const TriMesh& mesh) {
   const std::vector<Index> piece = triangle_components(mesh);
   std::map<Index, Index> sizes;
@@ -58,8 +60,6 @@ TriMesh largest_piece(const TriMesh& mesh) {
   }
   return sub_mesh(mesh, kept).mesh;
 }
-
-}  // namespace
 
 double middle_of_pelvis(const Volume& labels) { return middle_of(labels, kPelvis); }
 

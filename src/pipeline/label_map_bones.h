@@ -21,6 +21,9 @@ LabelledBones bones_from_labels(const std::filesystem::path& path, Side side);
 /// x of the middle plane of the pelvis in a label map, LPS mm.
 double middle_of_pelvis(const Volume& labels);
 
+/// The connected piece with most triangles.
+TriMesh largest_piece(const TriMesh& mesh);
+
 /// Surface of a mask's largest piece, the steps of thick slices smoothed away.
 TriMesh surface_of_mask(const Volume& mask);
 

@@ -14,8 +14,9 @@ struct AtlasExampleOptions {
   std::vector<std::string> exclude;
   /// Structures left out of a set, "set:structure", for example "libhip:hip_bone".
   std::vector<std::string> exclude_structures;
-  /// Folders of one hip each that a user segmented: femur.ply, hip_bone.ply, … with the side in the
-  /// folder's name.
+  /// Hips that a user segmented, one each: folders with femur.ply, hip_bone.ply, …, or label maps
+  /// with the structures' names (`io::read_labels`). "left" or "right" is in the name of the file
+  /// or its folder.
   std::vector<std::filesystem::path> own;
 };
 
