@@ -3,8 +3,8 @@
 
 usage: evaluate_muscles.py [--coxa build/release/coxa] [--shared ../shared] [--work DIR] [--only NAME,…] [--judge] [--picture]
 
-Images, landmarks and atlases are those of evaluate_segmentation.py, which see; muscles are judged by label_distance.py and by
-their overlap with the true labels (Dice).  --picture puts outlines over four slices of each image into DIR.
+Images, landmarks and atlases are those of evaluate_segmentation.py, which see; muscles are judged by the formula of
+label_distance.py and by their overlap with the true labels (Dice).  --picture puts outlines over four slices of each image into DIR.
 """
 import numpy as np
 

@@ -17,7 +17,7 @@ namespace {
 /// Samples of the new surface's grid: farther from the surface only the side counts.
 constexpr double kBand = 4.0;
 /// Of the sampling: a Gaussian over the depths against the voxels' steps.
-constexpr double kEvening = 0.8;
+constexpr double kEvening = 0.6;
 /// Voxels about a label that its depths need.
 constexpr Index kMargin = 3;
 

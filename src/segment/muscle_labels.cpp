@@ -5,7 +5,6 @@
 #include <coxa/mesh/voxelize.h>
 #include <coxa/segment/distance_map.h>
 #include <coxa/segment/label_parts.h>
-#include <coxa/segment/random_walker.h>
 
 #include <algorithm>
 #include <array>
@@ -260,7 +259,7 @@ BodyLabels muscle_labels(const std::vector<TriMesh>& bodies, const std::vector<T
   monitor.check_cancelled();
   const std::vector<int> likeliest =
       likeliest_labels(links(values, number, n, range.muscle, grid),
-                       priors_of(depths, number, n, grid, options), {}, monitor);
+                       priors_of(depths, number, n, grid, options), options.walk, monitor);
   for (std::size_t i = 0; i < voxels.size(); ++i)
     labels.label[static_cast<std::size_t>(voxels[i])] = likeliest[i];
   drop_small_parts(labels, static_cast<int>(bodies.size()), kLeastPiece);

@@ -17,9 +17,11 @@ namespace {
 
 /// mm, of the grid: a share of the body's size (the cube root of its volume) within these bounds.
 /// Muscles are no thinner than three times it, apart from their rims.
-constexpr double kGridShare = 0.04, kFinestGrid = 0.7, kCoarsestGrid = 1.5;
+constexpr double kGridShare = 0.04, kFinestGrid = 0.7, kCoarsestGrid = 1.2;
 /// Grid steps, of the new triangles; about as fine as the models'.
-constexpr double kEdge = 2.5;
+constexpr double kEdge = 2.2;
+/// Grid steps: rims rounded more would lose muscle.
+constexpr double kRounding = 0.5;
 /// mm, kept between bodies.
 constexpr double kGap = 0.1;
 /// Share of a body that is left at least, else it stays as it is, and share below which it is
@@ -69,6 +71,7 @@ double carve(const Separable& body, const std::vector<const TriMesh*>& obstacles
                           .edge = kEdge * grid,
                           .least_kept = kLeastKept,
                           .least_whole = 0.0,
+                          .rounding = kRounding,
                           .anew = body.uneven});
   } catch (const Error& error) {
     if (error.code() != ErrorCode::below_quality) throw;

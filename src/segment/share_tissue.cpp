@@ -13,7 +13,7 @@ namespace {
 
 /// mm, of the samples that a surface goes through: a share of the cube root of the body's volume,
 /// within bounds.
-constexpr double kGridShare = 0.04, kFinestGrid = 0.7, kCoarsestGrid = 1.5;
+constexpr double kGridShare = 0.04, kFinestGrid = 0.7, kCoarsestGrid = 1.2;
 /// Share of a body in view below which what the image shows of it is no muscle's worth: the model's
 /// surface stays.
 constexpr double kLeastShown = 0.2;

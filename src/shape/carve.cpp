@@ -93,12 +93,13 @@ Piece wanted_piece(TriMesh mesh, const CarveOptions& options) {
 Piece even_piece(const TriMesh& raw, const CarveOptions& options) {
   Piece best;
   for (const double opening : {1.0, 0.5, 0.25}) {
-    Piece piece = wanted_piece(rebuild(raw, {.spacing = options.spacing,
-                                             .opening = opening * options.spacing,
-                                             .target_edge = options.edge,
-                                             .max_move = kInfinity})
-                                   .mesh,
-                               options);
+    Piece piece =
+        wanted_piece(rebuild(raw, {.spacing = options.spacing,
+                                   .opening = opening * options.rounding * options.spacing,
+                                   .target_edge = options.edge,
+                                   .max_move = kInfinity})
+                         .mesh,
+                     options);
     if (piece.share > best.share) best = std::move(piece);
     if (best.share >= options.least_whole) break;
   }
@@ -109,8 +110,9 @@ Piece even_piece(const TriMesh& raw, const CarveOptions& options) {
 
 TriMesh carved(const TriMesh& mesh, const std::vector<const TriMesh*>& obstacles,
                const CarveOptions& options) {
-  require(options.gap >= 0.0 && options.spacing > 0.0 && options.edge > 0.0,
-          "gap, spacing and edge of a carved surface must be positive");
+  require(
+      options.gap >= 0.0 && options.spacing > 0.0 && options.edge > 0.0 && options.rounding > 0.0,
+      "gap, spacing, edge and rounding of a carved surface must be positive");
   require(options.least_kept > 0.0 && options.least_kept <= 1.0,
           "least_kept must be in (0, 1], got ", options.least_kept);
   require(options.least_whole >= 0.0 && options.least_whole <= 1.0,

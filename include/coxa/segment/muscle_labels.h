@@ -3,6 +3,7 @@
 #include <coxa/core/monitor.h>
 #include <coxa/mesh/tri_mesh.h>
 #include <coxa/segment/profile_search.h>
+#include <coxa/segment/random_walker.h>
 
 #include <cstdint>
 #include <vector>
@@ -36,6 +37,7 @@ struct MuscleLabelOptions {
   double claim = 20.0;      ///< mm, > 0, from a body within which tissue may be of it
   double far_share = 1e-3;  ///< of a body outside of itself, e times less for each far_length
   double far_length = 4.0;  ///< mm, > 0
+  WalkOptions walk = {};
 };
 
 /// Shares out what looks like muscle between bodies that lie roughly in place.

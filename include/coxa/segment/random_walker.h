@@ -21,10 +21,10 @@ struct WalkPrior {
 };
 
 struct WalkOptions {
-  double prior_weight = 0.004;  ///< > 0, of a share of 1 against a link of weight 1
-  double other_share = 3e-4;    ///< > 0, of being none of them, everywhere
-  double tolerance = 1e-3;      ///< of the residual, relative
-  int iterations = 200;         ///< >= 1, at most
+  double prior_weight = 0.02;  ///< > 0, of a share of 1 against a link of weight 1
+  double other_share = 3e-4;   ///< > 0, of being none of them, everywhere
+  double tolerance = 1e-3;     ///< of the residual, relative
+  int iterations = 200;        ///< >= 1, at most
 };
 
 /// The likeliest label of every voxel by random walks with priors (Grady 2005): the share of walks

@@ -13,6 +13,7 @@ struct CarveOptions {
   double least_kept = 0.7;    ///< share of the volume, in (0, 1], that must be left
   double least_whole = 0.95;  ///< share of that, in [0, 1], that one piece must be; others are
                               ///< lost, unless it is 0: then all stay
+  double rounding = 1.0;      ///< grid steps, > 0: radius of the rims of what was cut
   bool anew = false;          ///< new triangles even where nothing is in the way
 };
 
