@@ -52,8 +52,8 @@ struct ContactFigures {
   double deepest_sample = 0.0;  ///< mm, largest overlap at a single sampling point
 };
 
-/// Thinner than this at rest cartilage is an edge no image has measured (a voxel of a hip's MRI is
-/// no smaller), and its pressures are those of its shape, mm.
+/// Thinner than this at rest, about a voxel of the finest MRI of hips, cartilage is an edge that no
+/// image has measured, and its pressures are those of its shape, mm.
 inline constexpr double kThinCartilage = 0.5;
 
 /// What the acetabular cartilage's thin edges make of one converged frame's contact.
