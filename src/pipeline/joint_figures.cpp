@@ -68,8 +68,8 @@ void warn_of_thin_edges(const joint::JointResult& result, Record& record) {
   record.figures["largest_peak_pressure_p99_thick_mpa"] = without;
   if (share <= kMuchOnThin) return;
   record.warnings.push_back(join_text(
-      "up to ", 100.0 * share, " % of the joint force rests on acetabular cartilage thinner than ",
-      joint::kThinCartilage,
+      "up to ", std::lround(100.0 * share),
+      " % of the joint force rests on acetabular cartilage thinner than ", joint::kThinCartilage,
       " mm, which is an edge's shape rather than a measured thickness; the highest peak pressure "
       "is ",
       with, " MPa with it and ", without, " MPa without"));
