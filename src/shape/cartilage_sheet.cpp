@@ -3,6 +3,7 @@
 #include <coxa/core/error.h>
 #include <coxa/core/parallel.h>
 #include <coxa/geom/triangle_tree.h>
+#include <coxa/mesh/measures.h>
 #include <coxa/mesh/topology.h>
 #include <coxa/mesh/vertex_normals.h>
 
@@ -17,6 +18,64 @@ constexpr double kThickest = 8.0;  // mm, of any cartilage
 // a normal that meets the other side this many times farther off than its nearest point slants out
 // over the rim
 constexpr double kSlant = 1.6;
+
+/// Passes over the triangles beside each that even out which side it faces: drawn voxels are rough.
+constexpr int kEvening = 6;
+
+/// Means over each triangle and the three beside it, again and again.
+VecX evened(VecX values, const MeshEdges& edges, Index n_triangles) {
+  for (int pass = 0; pass < kEvening; ++pass) {
+    VecX sum = values, count = VecX::Ones(n_triangles);
+    for (Index e = 0; e < edges.vertices.rows(); ++e) {
+      const auto around = edges.triangles[e];
+      if (around.size() != 2) continue;
+      sum[around[0]] += values[around[1]];
+      sum[around[1]] += values[around[0]];
+      count[around[0]] += 1.0;
+      count[around[1]] += 1.0;
+    }
+    values = sum.cwiseQuotient(count);
+  }
+  return values;
+}
+
+/// Of those flagged the largest connected piece stays so.
+void keep_largest(const TriMesh& shell, std::vector<bool>& flags, bool flag) {
+  std::vector<Index> kept;
+  for (Index t = 0; t < shell.n_triangles(); ++t)
+    if (flags[static_cast<std::size_t>(t)] == flag) kept.push_back(t);
+  if (kept.empty()) return;
+  const TriMesh part = sub_mesh(shell, kept).mesh;
+  const std::vector<Index> piece = triangle_components(part);
+  Index largest = 0;
+  piece_areas(part, piece).maxCoeff(&largest);
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    if (piece[i] != largest) flags[static_cast<std::size_t>(kept[i])] = !flag;
+}
+
+/// A vertex at which the border would meet itself goes to the bone side with all about it.
+void open_pinches(const TriMesh& shell, const MeshEdges& edges, std::vector<bool>& on_bone) {
+  for (bool any = true; any;) {
+    any = false;
+    Eigen::VectorXi crossings = Eigen::VectorXi::Zero(shell.n_vertices());
+    for (Index e = 0; e < edges.vertices.rows(); ++e) {
+      const auto around = edges.triangles[e];
+      if (around.size() != 2 || on_bone[static_cast<std::size_t>(around[0])] ==
+                                    on_bone[static_cast<std::size_t>(around[1])])
+        continue;
+      ++crossings[edges.vertices(e, 0)];
+      ++crossings[edges.vertices(e, 1)];
+    }
+    for (Index t = 0; t < shell.n_triangles(); ++t) {
+      if (on_bone[static_cast<std::size_t>(t)]) continue;
+      bool pinched = false;
+      for (int c = 0; c < 3; ++c) pinched = pinched || crossings[shell.triangles(t, c)] > 2;
+      if (!pinched) continue;
+      on_bone[static_cast<std::size_t>(t)] = true;
+      any = true;
+    }
+  }
+}
 
 CartilageSides sides_of(const TriMesh& shell, const std::vector<bool>& on_bone) {
   std::vector<Index> bone, joint;
@@ -90,15 +149,23 @@ CartilageSides split_cartilage(const TriMesh& shell, Index n_bone_side) {
 CartilageSides split_cartilage(const TriMesh& shell, const TriMesh& bone) {
   const TriangleTree tree(bone.points, bone.triangles);
   const Points normals = triangle_normals(shell);
-  std::vector<bool> on_bone(static_cast<std::size_t>(shell.n_triangles()));
+  VecX facing(shell.n_triangles());
   for (Index t = 0; t < shell.n_triangles(); ++t) {
     const Vec3 centroid =
         (shell.points.row(shell.triangles(t, 0)) + shell.points.row(shell.triangles(t, 1)) +
          shell.points.row(shell.triangles(t, 2))) /
         3.0;
     const Vec3 to_bone = tree.nearest(centroid).point - centroid;
-    on_bone[static_cast<std::size_t>(t)] = to_bone.dot(normals.row(t)) > 0.0;
+    facing[t] = to_bone.normalized().dot(normals.row(t));
   }
+  const MeshEdges edges = mesh_edges(shell);
+  facing = evened(std::move(facing), edges, shell.n_triangles());
+  std::vector<bool> on_bone(static_cast<std::size_t>(shell.n_triangles()));
+  for (Index t = 0; t < shell.n_triangles(); ++t)
+    on_bone[static_cast<std::size_t>(t)] = facing[t] > 0.0;
+  keep_largest(shell, on_bone, true);
+  keep_largest(shell, on_bone, false);
+  open_pinches(shell, edges, on_bone);
   return sides_of(shell, on_bone);
 }
 

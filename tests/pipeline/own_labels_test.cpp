@@ -1,10 +1,12 @@
 #include <coxa/core/error.h>
 #include <coxa/io/labels.h>
 #include <coxa/mesh/mirrored.h>
+#include <coxa/mesh/simplex_mesh.h>
 #include <coxa/mesh/surface_distance.h>
 #include <coxa/mesh/validate.h>
 #include <coxa/mesh/voxelize.h>
 #include <coxa/pipeline/atlas_examples.h>
+#include <coxa/shape/build_atlas.h>
 #include <gtest/gtest.h>
 
 #include "small_run.h"
@@ -78,6 +80,22 @@ TEST(OwnLabels, GiveTheExampleThatWasDrawn) {
     const shape::TrustedSurface& found = examples.front().surfaces.at(name);
     EXPECT_TRUE(validate(found.mesh).valid()) << name << validate(found.mesh).text();
     EXPECT_LT(surface_distance(found.mesh, mesh).assd, 0.35) << name;
+  }
+}
+
+TEST(OwnLabels, GiveModelsOfBonesAndOfCartilagesWhoseSidesAreTold) {
+  const OwnFolder folder("own_models");
+  const fs::path path = folder / "hers_left.nii.gz";
+  io::write_labels(path, drawn(Vec3(-90.0, 12.0, 300.0)));
+  const shape::Atlas atlas =
+      shape::build_atlas(load_atlas_examples(folder / "nothing", {{}, {}, {path}}));
+  ASSERT_EQ(atlas.structures.size(), 4u);
+  const auto truth = small_hip();
+  // models are 2 to 3 mm coarse, the small hip bone 8 mm thick
+  for (const shape::StructureModel& model : atlas.structures) {
+    const TriMesh mean = dual_surface(model.hierarchy.levels.back());
+    EXPECT_LT(surface_distance(mean, truth.at(model.name)).assd, 2.0) << model.name;
+    EXPECT_EQ(model.n_bone_side > 0, model.name.find("_cartilage") != std::string::npos);
   }
 }
 
