@@ -18,8 +18,27 @@ constexpr double kSharp = 0.75;
 // evidence beyond the threshold that makes a vertex certain
 constexpr double kCertain = 4.0;
 // a layer thins out to its border, and less than about 0.6 mm of it vanishes between the dark
-// cortex and what is dark beyond; only where cartilage is brighter than marrow its glare shows
+// cortex and what is dark beyond; where cartilage is brighter than marrow its glare shows, but not
+// the last millimetre of a ball's, which is thinner (0.1 to 0.3 mm)
 constexpr double kHidden = 1.0;
+
+/// Whether the host bulges under the layer, as a ball, and is not hollow as a socket.
+bool bulges(const HostPatch& patch) {
+  Vec3 middle = Vec3::Zero();
+  double under = 0.0;
+  for (Index v = 0; v < patch.mesh.n_vertices(); ++v) {
+    if (patch.rim_distance[v] <= 0.0) continue;
+    middle += patch.mesh.points.row(v);
+    under += 1.0;
+  }
+  middle /= std::max(under, 1.0);
+  double outward = 0.0;
+  for (Index v = 0; v < patch.mesh.n_vertices(); ++v) {
+    if (patch.rim_distance[v] > 0.0)
+      outward += (patch.mesh.points.row(v).transpose() - middle).dot(patch.normals.row(v));
+  }
+  return outward > 0.0;
+}
 
 /// The evidence that parts inside from outside best, and the mean of the shares told right.
 struct Threshold {
@@ -82,10 +101,12 @@ std::vector<Coverage> coverages_of(std::span<const HostPatch> patches,
     const VecX none = VecX::Zero(patches[p].mesh.n_vertices());
     Coverage coverage{none, none, none, none};
     double sum = 0.0, total = 0.0, hidden = 0.0;
+    const bool ball = bulges(patches[p]);
     for (std::size_t image = 0; image < images.size(); ++image) {
       const auto [separation, count] = update_coverage(coverage, rays, p, image);
       sum += separation * count;
-      if (brightness[image].cartilage <= brightness[image].marrow) hidden += kHidden * count;
+      const bool dark = brightness[image].cartilage <= brightness[image].marrow;
+      if (dark || ball) hidden += kHidden * count;
       total += count;
     }
     if (total > 0.0) {

@@ -179,14 +179,21 @@ std::vector<std::vector<GapFit>> gaps_of(const std::vector<Measured>& all,
   return gaps;
 }
 
-/// One layer's part of the room between two bones, mm, as the layers' present share has it and the
-/// line between them, where the image shows one. @param gap null where it shows none
-double share_of(double room, double present_share, const GapFit* gap) {
+/// The room between two bones that their layers may fill, mm: less a film, where the image does not
+/// show lines between layers anyway.
+double fillable(double room, const GapFit& gap) {
+  if (std::isfinite(gap.deviation)) return room;
+  return room - std::min(kFilm, kLargestFilmShare * room);
+}
+
+/// One layer's part of the room between two bones, mm, as the layers' present share has it and,
+/// where it is told, the line between them.
+double share_of(double room, double present_share, const GapFit& gap, bool parted) {
   const double middle = room * present_share;
-  if (gap == nullptr) return middle - 0.5 * std::min(kFilm, kLargestFilmShare * room);
-  const double told = 1.0 / (gap->deviation * gap->deviation + kLeastDeviation * kLeastDeviation),
+  if (!parted) return middle - 0.5 * (room - fillable(room, gap));
+  const double told = 1.0 / (gap.deviation * gap.deviation + kLeastDeviation * kLeastDeviation),
                expected = 1.0 / (kExpected * kExpected);
-  return (told * gap->middle + expected * middle) / (told + expected) - 0.5 * gap->width;
+  return (told * gap.middle + expected * middle) / (told + expected) - 0.5 * gap.width;
 }
 
 /// Thickness along the patch's normals: what the brightness shows, less what is the other layer's.
@@ -204,17 +211,25 @@ VecX own_thickness(const Measured& m, const std::vector<Opposite>& others,
       const auto hit = other.bone->first_hit(p, normal, kOtherBone);
       if (!hit) continue;
       const GapFit& gap = gaps[static_cast<std::size_t>(v)];
-      const double measured =
-          own[v] + interpolated(other.layer->coverage.thickness, other.bone->triangles(), *hit);
+      const double theirs_measured =
+          interpolated(other.layer->coverage.thickness, other.bone->triangles(), *hit);
+      const double measured = own[v] + theirs_measured, touching = hit->distance - kTouching;
       const bool parted = gap.deviation < kToldApart && hit->distance - measured < kWidestGap;
-      if (own[v] < hit->distance - kTouching && !parted) continue;
-      if (interpolated(other.layer->coverage.score, other.bone->triangles(), *hit) <= 0.0) {
+      const bool covered =
+          interpolated(other.layer->coverage.score, other.bone->triangles(), *hit) > 0.0;
+      if (own[v] < touching && !parted) {
+        // both are seen to end, but, blurred, may seem to need more room than there is
+        if (covered && theirs_measured < touching)
+          own[v] *= std::min(1.0, fillable(hit->distance, gap) / measured);
+        continue;
+      }
+      if (!covered) {
         own[v] = std::min(own[v], hit->distance);
         continue;
       }
       const double mine = std::max(before, kLeastShare);
       const double theirs = std::max((*other.thickness)(p + hit->distance * normal), kLeastShare);
-      own[v] = share_of(hit->distance, mine / (mine + theirs), parted ? &gap : nullptr);
+      own[v] = share_of(hit->distance, mine / (mine + theirs), gap, parted);
     }
   });
   return smoothed_on(m.patch, own, m.coverage.known, kThicknessPasses);
