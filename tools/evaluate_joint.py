@@ -28,6 +28,11 @@ def subject_file(work, folder, name, frames):
     return path
 
 
+def largest_share(rows, column):
+    """Of the contact force, in any frame, percent."""
+    return max(100.0 * float(r[column]) / float(r["contact_force_N"]) for r in rows)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--coxa", default=ROOT / "build/release/coxa")
@@ -39,7 +44,7 @@ def main():
     options.work.mkdir(parents=True, exist_ok=True)
     wanted = [w for w in options.only.split(",") if w]
     print(f"{'hip':11s} {'converged':>9s} {'beyond':>6s} {'failed':>6s} {'last':>12s} {'p99 MPa':>8s} {'area %':>7s} {'force %':>8s} "
-          f"{'reaction':>9s}  strained most at the last frame (mean effective strain)")
+          f"{'reaction':>9s} {'on bone %':>9s} {'on thin %':>9s}  strained most at the last frame (mean effective strain)")
     for folder in sorted((options.shared / "data/libhip").glob("m*/*")):
         name = f"{folder.parent.name}_{folder.name}"
         if not (folder / "femoral_cartilage.ply").exists() or (wanted and name not in wanted):
@@ -60,7 +65,8 @@ def main():
         pose = f"{float(last['flexion_deg']):.0f} + {float(last['internal_rotation_deg']):.0f}"
         print(f"{name:11s} {len(good):9d} {count['beyond_bony_limit']:6d} {count['failed']:6d} {pose:>12s} "
               f"{float(last['peak_pressure_p99_MPa']):8.2f} {float(last['contact_area_percent']):7.1f} "
-              f"{max(float(r['force_error_percent']) for r in good):8.3f} {max(float(r['reaction_error']) for r in good):9.1e}  "
+              f"{max(float(r['force_error_percent']) for r in good):8.3f} {max(float(r['reaction_error']) for r in good):9.1e} "
+              f"{largest_share(good, 'force_on_bare_bone_N'):9.0f} {largest_share(good, 'force_on_thin_cartilage_N'):9.0f}  "
               f"{region} ({float(last[f'strain_{region}']):.3f})", flush=True)
 
 
