@@ -136,4 +136,12 @@ Points level_points(const SimplexHierarchy& hierarchy, std::size_t level, const 
          field_at_level(hierarchy, level, displacement, VecX::Ones(fine.rows()));
 }
 
+Body placed_body(const shape::StructureModel& model, Points placed) {
+  Body body;
+  body.model = &model;
+  body.fit = fit_model(model, placed, VecX::Ones(placed.rows()), 1.0);
+  body.points = body.fit.points;
+  return body;
+}
+
 }  // namespace coxa::segment

@@ -9,13 +9,19 @@
 
 namespace coxa::segment {
 
+/// Where bones start.
+struct BoneStart {
+  std::vector<Points> placed;  ///< per bone, finest mean points in the image
+  shape::Landmarks landmarks;  ///< by which, given or found; none where the atlas knows too few
+};
+
 /// Everything about one hip while it is segmented, as a right hip.
 class Hip {
  public:
   /// @param atlas, options must outlive the hip
   Hip(std::vector<PreparedImage> images, const shape::Atlas& atlas, const SegmentOptions& options);
 
-  void segment_bones(const shape::Landmarks& landmarks, const Monitor& monitor);
+  void segment_bones(const shape::Landmarks& given, const Monitor& monitor);
   void segment_layers(const Monitor& monitor);
   /// Muscles from where the bones carry them; nothing where none is asked for.
   void segment_muscles(const Monitor& monitor);
@@ -35,6 +41,14 @@ class Hip {
  private:
   /// The structures asked for and the ones they lie on.
   void choose_models();
+  std::vector<const shape::StructureModel*> models_of(
+      const std::vector<std::size_t>& numbers) const;
+  /// Where the bones of these numbers may start: by the landmarks given, else found.
+  std::vector<BoneStart> bone_starts(const std::vector<std::size_t>& numbers,
+                                     const shape::Landmarks& given, const Monitor& monitor);
+  std::vector<Body> bones_at(const std::vector<std::size_t>& numbers, const BoneStart& start);
+  /// The bones that the images show, by as many searches as they need.
+  std::vector<Body> searched_bones(std::vector<Body> bones, const Monitor& monitor);
   void choose_contrasts(const std::vector<Body>& bodies, Resolution resolution);
   std::vector<Body> found_by(const std::vector<Resolution>& resolutions, std::vector<Body> bones,
                              const Monitor& monitor) const;

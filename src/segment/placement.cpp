@@ -13,7 +13,6 @@
 namespace coxa::segment {
 namespace {
 
-constexpr Index kLeastLandmarks = 6;
 /// Bending stiffness of the spline for each mm of landmark error: a landmark 3 mm off among ten
 /// about a hip then moves the surface between its neighbours by less than that.
 constexpr double kSmoothnessPerError = 30.0;
@@ -169,8 +168,9 @@ std::vector<Points> place_by_landmarks(const std::vector<const shape::StructureM
                                        double landmark_error) {
   const Matched matched = match_names(landmarks, atlas);
   const auto n = static_cast<Index>(matched.atlas.rows());
-  require(n >= kLeastLandmarks, "segmentation needs at least ", kLeastLandmarks,
-          " landmarks that the atlas knows, got ", n, "; it knows ", known_names(atlas));
+  require(matched.atlas.rows() >= static_cast<Eigen::Index>(kLeastLandmarks),
+          "segmentation needs at least ", kLeastLandmarks, " landmarks that the atlas knows, got ",
+          n, "; it knows ", known_names(atlas));
   check_plausible(matched);
 
   const std::vector<std::vector<Index>> owned = owned_landmarks(bones, matched.atlas);

@@ -15,6 +15,7 @@ constexpr double kCost = 0.01;
 /// Standard deviations: of the logarithm of size, and of where two bones have the joint's centre,
 /// mm (bones fitted to the right place had it 1 to 5 mm apart, to wrong ones 2 to 16).
 constexpr double kSizeSpread = 0.07, kJointSpread = 4.0;
+constexpr double kTurnSpread = 0.12;
 /// Of a fit; the models follow within a few.
 constexpr int kIterations = 8;
 
@@ -31,7 +32,8 @@ double score_of(const std::vector<Body>& bodies) {
   double sum = 0.0, weight = 0.0, all = 0.0;
   double cost = kCost * std::pow(dislocation(bodies) / kJointSpread, 2);
   for (const Body& body : bodies) {
-    cost += size_cost(body.fit.pose.scale) / static_cast<double>(bodies.size());
+    cost += (size_cost(body.fit.pose.scale) + turn_cost(body.fit.pose.X.R)) /
+            static_cast<double>(bodies.size());
     sum += body.match.here.sum();
     weight += body.match.seen.sum();
     all += static_cast<double>(body.match.seen.size());
@@ -42,6 +44,11 @@ double score_of(const std::vector<Body>& bodies) {
 }  // namespace
 
 double size_cost(double scale) { return kCost * std::pow(std::log(scale) / kSizeSpread, 2); }
+
+double turn_cost(const Mat3& R) {
+  const double angle = std::acos(std::clamp(0.5 * (R.trace() - 1.0), -1.0, 1.0));
+  return kCost * std::pow(angle / kTurnSpread, 2);
+}
 
 Vec3 joint_centre(const PlacedBones& place) {
   Vec3 sum = Vec3::Zero();

@@ -13,6 +13,10 @@ namespace coxa::segment {
 /// fit anywhere.
 double size_cost(double scale);
 
+/// What a turn from the atlas' orientation costs: patients lie alike within some ten degrees, and
+/// round bones fit in any turn.
+double turn_cost(const Mat3& R);
+
 /// The bones at one place of an image, each fitted by its own shape model.
 struct PlacedBones {
   std::vector<Body> bodies;

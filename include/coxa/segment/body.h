@@ -29,6 +29,9 @@ struct Body {
   VecX seat;   ///< V: 1 on vertices that lie on the host's surface; empty without a host
 };
 
+/// A body where its model comes nearest to the finest mean points placed in the image.
+Body placed_body(const shape::StructureModel& model, Points placed);
+
 /// The finest level's topology with the body's positions.
 SimplexMesh finest_mesh(const Body& body);
 

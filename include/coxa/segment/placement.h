@@ -8,6 +8,9 @@
 
 namespace coxa::segment {
 
+/// Landmarks by which a hip is placed, at least.
+inline constexpr std::size_t kLeastLandmarks = 6;
+
 /// Mirror images in the plane x = 0: every hip is worked on as a right hip.
 Volume mirrored(const Volume& volume);
 Points mirrored(const Points& points);
