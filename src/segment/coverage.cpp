@@ -19,7 +19,7 @@ constexpr double kSharp = 0.75;
 constexpr double kCertain = 4.0;
 // a layer thins out to its border, and less than about 0.6 mm of it vanishes between the dark
 // cortex and what is dark beyond; where cartilage is brighter than marrow its glare shows, but not
-// the last millimetre of a ball's, which is thinner (0.1 to 0.3 mm)
+// the last millimetre of a ball's, which is thinner
 constexpr double kHidden = 1.0;
 
 /// Whether the host bulges under the layer, as a ball, and is not hollow as a socket.
