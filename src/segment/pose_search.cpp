@@ -26,6 +26,8 @@ constexpr Index kProbes = 100, kManyProbes = 300;
 /// grid, 6 of the improved and 3 of the coarsely fitted.
 constexpr std::size_t kImproved = 80, kFitted = 8, kUpright = 3, kFinelyFitted = 4;
 constexpr double kApart = 18.0;
+/// mm. Fits that differ by less lead to one result.
+constexpr double kAlike = 3.0;
 /// How far off a place of the grid is, and, once fitted, the bones. The finer fit tells a hip from
 /// what looks like one from afar: at the right place the correlation stays as the image gets
 /// sharper.
@@ -152,6 +154,14 @@ std::vector<PlacedBones> best_fitted(std::vector<PlacedBones> places, const Prep
   return places;
 }
 
+/// mm, mean distance of corresponding vertices of the bones.
+double apart(const std::vector<Points>& a, const std::vector<Points>& b) {
+  double sum = 0.0;
+  for (std::size_t bone = 0; bone < a.size(); ++bone)
+    sum += (a[bone] - b[bone]).rowwise().norm().mean();
+  return sum / static_cast<double>(a.size());
+}
+
 /// The first of the places with what rivals it there, and how far it is above all other places.
 FoundPose found_pose(const std::vector<PlacedBones>& places) {
   const PlacedBones& best = places.front();
@@ -160,8 +170,11 @@ FoundPose found_pose(const std::vector<PlacedBones>& places) {
     const bool here = (joint_centre(place) - found.centre).norm() <= kApart;
     if (!here) found.margin = std::min(found.margin, best.score - place.score);
     if (!here || place.score < best.score - kLeastMargin) continue;
-    found.starts.emplace_back();
-    for (const Body& body : place.bodies) found.starts.back().push_back(body.fit.points);
+    std::vector<Points> start;
+    for (const Body& body : place.bodies) start.push_back(body.fit.points);
+    const bool known = std::any_of(found.starts.begin(), found.starts.end(),
+                                   [&](const auto& other) { return apart(start, other) < kAlike; });
+    if (!known) found.starts.push_back(std::move(start));
   }
   return found;
 }
